@@ -1,0 +1,22 @@
+//! Sinew: see how a mesh bends, make another one bend the same way.
+//!
+//! The crate implements, for animated triangle meshes,
+//!
+//! * *Segmenting a deforming mesh into near-rigid components* (Lee, Wang, Chen 2006): [`segmentation`];
+//!
+//! Data flows one way: [`import`] (or [`zoo`]) → [`sequence::Sequence`] → [`segmentation`] → [`export`] or
+//! [`view`]. Algorithms are plain functions from inputs and a parameter struct to a result struct; they know
+//! nothing of files, of the browser or of drawing.
+
+pub mod clock;
+pub mod export;
+pub mod import;
+pub mod linalg;
+pub mod mesh;
+pub mod observer;
+pub mod segmentation;
+pub mod sequence;
+pub mod view;
+pub mod warning;
+pub mod web;
+pub mod zoo;

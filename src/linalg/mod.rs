@@ -1,0 +1,1 @@
+//! Small numerical tools: 3×3 decompositions, rigid fits, sparse solves.

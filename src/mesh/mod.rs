@@ -1,0 +1,1 @@
+//! What the algorithms need to know of a triangle mesh: adjacency, pieces, areas, welding.

@@ -1,0 +1,170 @@
+//! A reference pose and the poses that share its faces.
+
+use glam::DVec3;
+use serde::Serialize;
+
+/// A triangle mesh in a reference pose, and the same mesh in other poses.
+///
+/// Lengths are in the units of the input. What holds for every sequence is checked by [`Sequence::new`]: every
+/// pose has as many vertices as the reference, every face names three vertices that exist, every coordinate is
+/// finite.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Sequence {
+    name: String,
+    faces: Vec<[u32; 3]>,
+    reference: Vec<DVec3>,
+    poses: Vec<Pose>,
+    polygons: Option<Vec<u32>>,
+}
+
+/// One pose of a sequence.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Pose {
+    /// Where it comes from: a file name, or the time in the clip.
+    pub name: String,
+    /// Time in seconds from the start of the animation.
+    pub time: f64,
+    /// #V positions.
+    pub positions: Vec<DVec3>,
+}
+
+/// Why arrays do not make a sequence.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum SequenceError {
+    /// A face names a vertex that does not exist.
+    #[error("face {face} names vertex {vertex}, but there are only {vertices} vertices")]
+    FaceOutOfRange {
+        /// The face, counted from 0.
+        face: usize,
+        /// The vertex it names.
+        vertex: u32,
+        /// The number of vertices.
+        vertices: usize,
+    },
+    /// A pose has another number of vertices than the reference pose.
+    #[error("pose {pose} has {found} vertices, but the reference pose has {expected}; all poses must share one mesh")]
+    VertexCount {
+        /// The pose's name.
+        pose: String,
+        /// Its number of vertices.
+        found: usize,
+        /// The reference pose's number of vertices.
+        expected: usize,
+    },
+    /// A coordinate is NaN or infinite.
+    #[error("vertex {vertex} of {pose} has a coordinate that is not a finite number")]
+    NotFinite {
+        /// The pose's name.
+        pose: String,
+        /// The vertex, counted from 0.
+        vertex: usize,
+    },
+    /// The map from faces to polygons has the wrong length.
+    #[error("{found} polygon numbers for {expected} faces")]
+    PolygonCount {
+        /// Its length.
+        found: usize,
+        /// The number of faces.
+        expected: usize,
+    },
+}
+
+/// Sizes of a sequence, for reports.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+pub struct Sizes {
+    /// Number of vertices.
+    pub vertices: usize,
+    /// Number of triangles.
+    pub faces: usize,
+    /// Number of poses, the reference not counted.
+    pub poses: usize,
+}
+
+impl Sequence {
+    /// Checks the arrays and makes a sequence of them.
+    ///
+    /// `faces` is #F triples of vertex numbers; `reference` and the positions of every pose are #V points.
+    pub fn new(
+        name: impl Into<String>,
+        faces: Vec<[u32; 3]>,
+        reference: Vec<DVec3>,
+        poses: Vec<Pose>,
+    ) -> Result<Self, SequenceError> {
+        let vertices = reference.len();
+        for (face, corners) in faces.iter().enumerate() {
+            if let Some(&vertex) = corners.iter().find(|&&v| v as usize >= vertices) {
+                return Err(SequenceError::FaceOutOfRange { face, vertex, vertices });
+            }
+        }
+        check_finite("the reference pose", &reference)?;
+        for pose in &poses {
+            if pose.positions.len() != vertices {
+                return Err(SequenceError::VertexCount {
+                    pose: pose.name.clone(),
+                    found: pose.positions.len(),
+                    expected: vertices,
+                });
+            }
+            check_finite(&pose.name, &pose.positions)?;
+        }
+        Ok(Self { name: name.into(), faces, reference, poses, polygons: None })
+    }
+
+    /// Records which input polygon each triangle was cut from (#F numbers, not falling), where the input had
+    /// polygons.
+    pub fn with_polygons(mut self, polygons: Vec<u32>) -> Result<Self, SequenceError> {
+        if polygons.len() != self.faces.len() {
+            return Err(SequenceError::PolygonCount { found: polygons.len(), expected: self.faces.len() });
+        }
+        self.polygons = Some(polygons);
+        Ok(self)
+    }
+
+    /// What to call it: the file's or creature's name.
+    pub fn name(&self) -> &str {
+        &self.name
+    }
+
+    /// #F triples of vertex numbers.
+    pub fn faces(&self) -> &[[u32; 3]] {
+        &self.faces
+    }
+
+    /// #V positions in the reference pose.
+    pub fn reference(&self) -> &[DVec3] {
+        &self.reference
+    }
+
+    /// The other poses, in the order of time.
+    pub fn poses(&self) -> &[Pose] {
+        &self.poses
+    }
+
+    /// The input polygon that each triangle was cut from; `None` where every input polygon was a triangle.
+    pub fn polygons(&self) -> Option<&[u32]> {
+        self.polygons.as_deref()
+    }
+
+    /// Numbers of vertices, faces and poses.
+    pub fn sizes(&self) -> Sizes {
+        Sizes { vertices: self.reference.len(), faces: self.faces.len(), poses: self.poses.len() }
+    }
+
+    /// Length of the diagonal of the reference pose's bounding box over the vertices that faces use; 0 for an
+    /// empty mesh. The unit in which Sinew states residuals.
+    pub fn diagonal(&self) -> f64 {
+        let (mut low, mut high) = (DVec3::INFINITY, DVec3::NEG_INFINITY);
+        for &v in self.faces.iter().flatten() {
+            low = low.min(self.reference[v as usize]);
+            high = high.max(self.reference[v as usize]);
+        }
+        if low.x > high.x { 0.0 } else { low.distance(high) }
+    }
+}
+
+fn check_finite(pose: &str, positions: &[DVec3]) -> Result<(), SequenceError> {
+    match positions.iter().position(|p| !p.is_finite()) {
+        Some(vertex) => Err(SequenceError::NotFinite { pose: pose.to_owned(), vertex }),
+        None => Ok(()),
+    }
+}

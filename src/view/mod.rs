@@ -1,0 +1,1 @@
+//! Drawing: camera, palettes, picking (plain), and the GPU scene (in the page bundle only).

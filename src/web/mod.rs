@@ -1,0 +1,1 @@
+//! The two wasm entries: the page, which draws, and the worker, which computes.
