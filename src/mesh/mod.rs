@@ -1,1 +1,7 @@
 //! What the algorithms need to know of a triangle mesh: adjacency, pieces, areas, welding.
+
+pub mod dual;
+pub mod face;
+pub mod near;
+
+pub use dual::{DualEdge, DualGraph};
