@@ -12,6 +12,7 @@ use crate::import::{Clip, File, ImportError};
 use crate::warning::Warning;
 use glam::{DAffine3, DVec3};
 use std::collections::BTreeMap;
+use std::collections::btree_map::Entry;
 
 /// A glTF file that can be posed at any time of any clip.
 #[derive(Clone, Debug)]
@@ -256,28 +257,18 @@ impl Reader<'_, '_> {
             };
             let primitives = self.document.meshes.get(mesh).map_or(0, |m| m.primitives.len());
             for number in 0..primitives {
-                let key = (mesh, number, joints);
-                if !known.contains_key(&key) {
-                    let shape = shape::read(
-                        self.document,
-                        self.buffers,
-                        mesh,
-                        number,
-                        joints,
-                        &mut self.budget,
-                        self.warnings,
-                    )?;
-                    known.insert(
-                        key,
-                        shape.map(|shape| {
-                            shapes.push(shape);
-                            shapes.len() - 1
-                        }),
-                    );
-                }
-                if let Some(Some(shape)) = known.get(&key) {
-                    instances.push(Instance { node, shape: *shape, skin });
-                }
+                let shape = match known.entry((mesh, number, joints)) {
+                    Entry::Occupied(entry) => *entry.get(),
+                    Entry::Vacant(entry) => {
+                        let primitive = (mesh, number);
+                        let (document, buffers) = (self.document, self.buffers);
+                        let read = shape::read(document, buffers, primitive, joints, &mut self.budget, self.warnings)?;
+                        let first_free = shapes.len();
+                        shapes.extend(read);
+                        *entry.insert((shapes.len() > first_free).then_some(first_free))
+                    }
+                };
+                instances.extend(shape.map(|shape| Instance { node, shape, skin }));
             }
         }
         Ok((shapes, instances))
