@@ -3,5 +3,7 @@
 pub mod dual;
 pub mod face;
 pub mod near;
+pub mod pieces;
+pub mod weld;
 
 pub use dual::{DualEdge, DualGraph};
