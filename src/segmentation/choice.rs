@@ -1,29 +1,58 @@
-//! The number of parts, from the costs of the merge tree.
+//! The number of parts, from the costs of the merge tree (beyond the paper).
+//!
+//! Three questions, asked of the squared residual that is left with 1, 2, 3 … parts:
+//! how many parts explain nearly all of the motion; do so many pay, or does the mesh bend so softly that more parts only
+//! dice it finer; and does joining two more parts suddenly cost much more, as when a joint of a skeleton is lost?
 
 use super::Merge;
 use super::finest::RIGID;
 
-/// As many parts as explain this share of the non-rigid motion are always enough.
-const EXPLAINED: f64 = 0.9935;
+/// As many parts as leave this share of the non-rigid motion (squared) unexplained are enough.
+const UNEXPLAINED: f64 = 0.003;
 
-/// Splitting a body that bends evenly into K parts lowers its squared residual about like 1 / K to this power; parts
+/// Splitting a body that bends evenly into K parts lowers its squared residual at least like 1 / K to this power; parts
 /// that do no better than that are not worth having.
 const POWER: f64 = 1.2;
 
-/// More parts than this are nobody's first look at a mesh, even at one that deforms everywhere.
+/// More parts than this are nobody's first look at a mesh that bends everywhere.
 const MOST: usize = 24;
 
-/// The number of parts at which the merge tree is best cut: among the numbers that leave something of the motion to
-/// explain, the one with the least `residual · K^1.2`.
+/// A joint is where one more merge costs so many times as much as the next cheaper one (squared residuals): a clear one
+/// anywhere up to [`MOST_JOINTS`] parts, a fair one only a little beyond the number that is enough.
+const CLEAR_JOINT: f64 = 16.0;
+const FAIR_JOINT: f64 = 4.0;
+const MOST_JOINTS: usize = 80;
+const LITTLE_BEYOND: f64 = 1.6;
+
+/// The number of parts at which the merge tree is best cut.
 ///
-/// `base` is the summed squared residual of the finest parts, `samples` the number of squares in it (faces × poses).
+/// `base` is the summed squared residual of the finest parts, `samples` the number of squares in it (faces × poses),
+/// lengths at unit diagonal.
 pub fn number_of_parts(merges: &[Merge], base: f64, samples: usize) -> usize {
-    let curve = residuals(merges, base);
-    let Some(&whole) = curve.first() else { return 1 };
-    let rigid = RIGID * RIGID * samples as f64;
-    let enough = ((1.0 - EXPLAINED) * whole).max(rigid);
-    let last = curve.iter().position(|&r| r <= enough).unwrap_or(curve.len() - 1).min(MOST - 1);
-    let price = |i: usize| curve[i] * ((i + 1) as f64).powf(POWER);
+    let visible = RIGID * RIGID * samples as f64;
+    let enough = enough_parts(&residuals(merges, base), visible);
+    // costs[k − 1] is the cost of merging from k + 1 to k parts.
+    let costs: Vec<f64> = merges.iter().rev().map(|m| m.cost).collect();
+    let jump = |parts: usize| match costs.get(parts - 1) {
+        Some(&next) if parts > 1 && costs[parts - 2] > visible => costs[parts - 2] / next.max(0.01 * visible),
+        _ => 0.0,
+    };
+    let clear = (enough + 1..=MOST_JOINTS).rev().find(|&k| jump(k) >= CLEAR_JOINT);
+    let beyond = (LITTLE_BEYOND * enough as f64) as usize;
+    let fair = || {
+        (enough + 1..=beyond)
+            .filter(|&k| jump(k) >= FAIR_JOINT)
+            .reduce(|best, k| if jump(k) > jump(best) { k } else { best })
+    };
+    clear.or_else(fair).unwrap_or(enough)
+}
+
+/// Among the numbers of parts that leave something to explain, the one with the least `residual · K^1.2`.
+fn enough_parts(residuals: &[f64], visible: f64) -> usize {
+    let Some(&whole) = residuals.first() else { return 1 };
+    let enough = (UNEXPLAINED * whole).max(visible);
+    let last = residuals.iter().position(|&r| r <= enough).unwrap_or(residuals.len() - 1).min(MOST - 1);
+    let price = |i: usize| residuals[i] * ((i + 1) as f64).powf(POWER);
     1 + (0..=last).fold(0, |best, i| if price(i) < price(best) { i } else { best })
 }
 
@@ -37,4 +66,33 @@ fn residuals(merges: &[Merge], base: f64) -> Vec<f64> {
     }
     curve.reverse();
     curve
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Merges with the given rms costs (at unit diagonal, over one sample), the last to go first.
+    fn tree(costs: &[f64]) -> Vec<Merge> {
+        costs.iter().rev().map(|c| Merge { from: 1, into: 0, cost: c * c }).collect()
+    }
+
+    #[test]
+    fn joints_are_found_however_little_hangs_on_the_last() {
+        // Five parts; the fifth moves a hundredth as far as the others.
+        assert_eq!(number_of_parts(&tree(&[0.1, 0.09, 0.08, 0.001, 1e-7, 1e-8]), 1e-16, 1), 5);
+    }
+
+    #[test]
+    fn soft_bending_is_not_diced() {
+        let mut costs = vec![0.1, 0.055, 0.044];
+        costs.extend((0..60).map(|i| 0.01 * 0.96f64.powi(i)));
+        assert_eq!(number_of_parts(&tree(&costs), 1e-5, 1), 4);
+    }
+
+    #[test]
+    fn what_moves_as_one_is_one() {
+        assert_eq!(number_of_parts(&tree(&[1e-6, 1e-9, 1e-12]), 0.0, 1), 1);
+        assert_eq!(number_of_parts(&[], 0.0, 0), 1);
+    }
 }

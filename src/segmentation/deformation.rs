@@ -3,20 +3,42 @@
 use super::gradients::Gradients;
 use crate::linalg::polar::frobenius_squared;
 use crate::mesh::DualGraph;
-use glam::DVec3;
+use glam::{DMat3, DVec3};
 
 /// Centroids closer than this (at unit diagonal) count as this far apart, so that Eq. 4 stays finite.
 const CLOSEST: f64 = 1e-6;
 
-/// Adds one pose to the #E deformation distances of Eq. 4, `max_t ‖Mᵢ − Mⱼ‖²_F / Geod`, with lengths at unit diagonal.
-pub fn raise_by_pose(
-    distances: &mut [f64],
-    gradients: &Gradients<'_>,
-    graph: &DualGraph,
-    geodesic: &[f64],
-    positions: &[DVec3],
-) {
-    let m = gradients.all(positions);
+/// Stretch that counts as rigid in any case: that of a rotation whose coordinates were rounded.
+const LEAST_STRETCH: f64 = 0.01;
+
+/// What the poses have shown so far: maxima over poses.
+pub struct Deformation {
+    /// #E deformation distances of Eq. 4, `max_t ‖Mᵢ − Mⱼ‖²_F / Geod`, with lengths at unit diagonal.
+    pub distances: Vec<f64>,
+    /// #F: how far each face is from moving rigidly by itself, `max_t ‖MᵀM − I‖_F`.
+    pub stretch: Vec<f64>,
+}
+
+impl Deformation {
+    /// No pose yet.
+    pub fn new(graph: &DualGraph) -> Self {
+        Self { distances: vec![0.0; graph.edges().len()], stretch: vec![0.0; graph.face_count()] }
+    }
+
+    /// Adds the pose with the given #V positions; `geodesic` are #E distances between centroids.
+    pub fn add_pose(&mut self, gradients: &Gradients<'_>, graph: &DualGraph, geodesic: &[f64], positions: &[DVec3]) {
+        let m = gradients.all(positions);
+        raise_distances(&mut self.distances, graph, geodesic, &m);
+        for (stretch, m) in self.stretch.iter_mut().zip(&m) {
+            let s = frobenius_squared(m.transpose() * *m - DMat3::IDENTITY);
+            if s > *stretch * *stretch && s.is_finite() {
+                *stretch = s.sqrt();
+            }
+        }
+    }
+}
+
+fn raise_distances(distances: &mut [f64], graph: &DualGraph, geodesic: &[f64], m: &[DMat3]) {
     for (e, edge) in graph.edges().iter().enumerate() {
         let [i, j] = edge.faces.map(|f| m[f as usize]);
         let d = frobenius_squared(i - j) / geodesic[e].max(CLOSEST);
@@ -48,6 +70,13 @@ pub fn edge_weights(geodesic: &[f64], deformation: &[f64], delta: f64, scale: Sc
     let mean_deformation = mean(deformation.iter().map(|d| d.min(ceiling)));
     let weight = |(&g, &d): (&f64, &f64)| delta * over(g, mean_length) + (1.0 - delta) * over(d, mean_deformation);
     geodesic.iter().zip(deformation).map(weight).collect()
+}
+
+/// #F weights (0 to 1) in the fits of rigid motions: a face that stretches far more than most (across a joint, or torn
+/// between two bones) is explained by no rigid motion and shall not decide where one ends.
+pub fn rigidity(stretch: &[f64]) -> Vec<f64> {
+    let scale = (2.0 * quantile(stretch, 0.5)).max(LEAST_STRETCH);
+    stretch.iter().map(|s| 1.0 / (1.0 + (s / scale).powi(2))).collect()
 }
 
 /// The value below which the share `q` (0 to 1) of the values lies; 0 for none.

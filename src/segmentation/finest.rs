@@ -24,7 +24,7 @@ pub fn split_cells(
     for (f, &label) in labels.iter().enumerate() {
         members[label as usize].push(f as u32);
     }
-    let mut moments = faces.moments(labels, cells);
+    let mut moments = faces.weighted_moments(labels, cells);
     let mut heap = BinaryHeap::new();
     let urgency = |members: &[u32], moments: &PartMoments, cell: u32| {
         let residual = motion::residual(moments);

@@ -46,29 +46,37 @@ impl FaceMotion {
         self.reference.len()
     }
 
-    /// Weight of a face in sums of squares.
-    pub fn weight(&self, face: u32) -> f64 {
-        self.weight[face as usize]
-    }
-
     /// #T centroids of a face.
     fn moved(&self, face: u32) -> &[Vec3] {
         &self.moved[face as usize * self.poses..][..self.poses]
     }
 
-    /// Adds a face to the moments of a part.
+    /// Adds a face to the moments of a part, by its weight.
     pub fn add_face(&self, moments: &mut PartMoments, face: u32) {
-        let (w, p) = (self.weight[face as usize], self.reference[face as usize].as_dvec3());
+        self.add(moments, face, self.weight[face as usize]);
+    }
+
+    fn add(&self, moments: &mut PartMoments, face: u32, w: f64) {
+        let p = self.reference[face as usize].as_dvec3();
         for (m, q) in moments.iter_mut().zip(self.moved(face)) {
             m.add(w, p, q.as_dvec3());
         }
     }
 
-    /// Moments of the parts `0..parts` under #F labels.
-    pub fn moments(&self, labels: &[u32], parts: usize) -> Vec<PartMoments> {
+    /// Weighted moments of the parts `0..parts` under #F labels.
+    pub fn weighted_moments(&self, labels: &[u32], parts: usize) -> Vec<PartMoments> {
         let mut moments = vec![vec![Moments::default(); self.poses]; parts];
         for (f, &label) in labels.iter().enumerate() {
             self.add_face(&mut moments[label as usize], f as u32);
+        }
+        moments
+    }
+
+    /// Moments of the parts `0..parts` under #F labels, every face counting alike.
+    pub fn moments(&self, labels: &[u32], parts: usize) -> Vec<PartMoments> {
+        let mut moments = vec![vec![Moments::default(); self.poses]; parts];
+        for (f, &label) in labels.iter().enumerate() {
+            self.add(&mut moments[label as usize], f as u32, 1.0);
         }
         moments
     }
@@ -98,12 +106,12 @@ pub fn best_motion(moments: &PartMoments) -> Vec<Rigid32> {
         .collect()
 }
 
-/// Weighted squared residual of a part over all poses.
+/// Squared residual of a part, summed over all poses.
 pub fn residual(moments: &PartMoments) -> f64 {
     moments.iter().map(Moments::residual).sum()
 }
 
-/// Weighted squared residual of the union of two parts.
+/// Squared residual of the union of two parts.
 pub fn union_residual(a: &PartMoments, b: &PartMoments) -> f64 {
     let union = |(x, y): (&Moments, &Moments)| {
         let mut sum = *x;

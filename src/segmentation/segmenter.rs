@@ -2,7 +2,7 @@
 
 use super::averages::{Averages, Exact, Landmarks};
 use super::clustering::{self, Clustering};
-use super::deformation::{self, Scale};
+use super::deformation::{self, Deformation, Scale};
 use super::features::{self, Features, Thresholds};
 use super::gradients::Gradients;
 use super::motion::{self, FaceMotion};
@@ -17,7 +17,7 @@ use crate::warning::Warning;
 use glam::DVec3;
 
 /// Finest parts of the merge tree: enough that every joint lies between two of them.
-const FINEST: usize = 160;
+const FINEST: usize = 240;
 
 /// Landmark faces that stand for all faces in the averages of Eq. 7.
 const LANDMARKS: usize = 64;
@@ -51,7 +51,7 @@ pub struct Segmenter {
     faces: FaceMotion,
     finest: Vec<u32>,
     finest_count: usize,
-    pub base: f64,
+    base: f64,
     steps: Steps,
     warnings: Vec<Warning>,
     seconds: Vec<(&'static str, f64)>,
@@ -118,11 +118,12 @@ impl Segmenter {
         let scaled: Vec<Vec<DVec3>> =
             sequence.poses().iter().map(|pose| pose.positions.iter().map(|&p| p * scale).collect()).collect();
         let poses: Vec<&[DVec3]> = scaled.iter().map(Vec::as_slice).collect();
-        let mut distances = vec![0.0; graph.edges().len()];
+        let mut deformation = Deformation::new(&graph);
         for (t, positions) in poses.iter().enumerate() {
             watch.tell(0.05 + 0.25 * t as f64 / poses.len() as f64)?;
-            deformation::raise_by_pose(&mut distances, &gradients, &graph, &geodesic, positions);
+            deformation.add_pose(&gradients, &graph, &geodesic, positions);
         }
+        let Deformation { distances, stretch } = deformation;
         let kind = if paper { Scale::Mean } else { Scale::Winsorised };
         let weights = deformation::edge_weights(&geodesic, &distances, parameters.delta, kind);
 
@@ -151,7 +152,7 @@ impl Segmenter {
         };
 
         watch.begin("merge tree", 0.8)?;
-        let faces = FaceMotion::new(sequence, scale, vec![1.0; graph.face_count()]);
+        let faces = FaceMotion::new(sequence, scale, deformation::rigidity(&stretch));
         let mut finest_labels = rounds.last().cloned().unwrap_or_default();
         let (merges, finest_count, base) = if paper {
             (Vec::new(), partitions, 0.0)
