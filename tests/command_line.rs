@@ -1,5 +1,5 @@
 //! The command line: reports, files, and the exit status 2 with one sentence for what cannot be used.
-#![cfg(feature = "cli")]
+#![cfg(all(feature = "cli", not(target_arch = "wasm32")))]
 
 mod gltf_maker;
 
