@@ -1,4 +1,5 @@
 //! Imports of files made here: every feature against values worked out by hand, and damaged files of all kinds.
+#![cfg(not(target_arch = "wasm32"))]
 
 mod gltf_maker;
 
@@ -222,6 +223,43 @@ fn bind_pose_keeps_the_scale_of_the_poses() {
     close(nodes.sequence.reference()[1], [0.01, 0.05, 0.0]);
 }
 
+/// Hair bound to the second joint alone, and a hat that hangs on it without a skin, go with the body's bind pose.
+#[test]
+fn what_hangs_on_a_joint_is_bound_with_it() {
+    let mut maker = skinned();
+    let joints = maker.accessor(&[0; 12], 5121, "VEC4", 3);
+    let weights = maker.accessor(&[255, 0, 0, 0, 255, 0, 0, 0, 255, 0, 0, 0], 5121, "VEC4", 3);
+    maker.json["accessors"][weights]["normalized"] = json!(true);
+    let attributes = json!({"POSITION": 0, "JOINTS_0": joints, "WEIGHTS_0": weights});
+    let hair = json!({"primitives": [{"attributes": attributes}]});
+    let hat = json!({"primitives": [{"attributes": {"POSITION": 0}}]});
+    maker.json["meshes"].as_array_mut().unwrap().extend([hair, hat]);
+    // The hair's skin has the second joint only, bound at x = 1 of the mesh's frame.
+    let bind = maker.json["skins"][0]["inverseBindMatrices"].as_u64().unwrap() as usize;
+    let mut second = maker.json["accessors"][bind].clone();
+    second["byteOffset"] = json!(64);
+    second["count"] = json!(1);
+    maker.json["accessors"].as_array_mut().unwrap().push(second);
+    let second = maker.json["accessors"].as_array().unwrap().len() - 1;
+    maker.json["skins"].as_array_mut().unwrap().push(json!({"joints": [3], "inverseBindMatrices": second}));
+    let nodes = maker.json["nodes"].as_array_mut().unwrap();
+    nodes.extend([json!({"mesh": 1, "skin": 1}), json!({"mesh": 2})]);
+    maker.json["nodes"][3]["children"] = json!([5]);
+    maker.json["scenes"] = json!([{"nodes": [0, 1, 4]}]);
+    // The nodes rest with the second joint turned and far away.
+    maker.json["nodes"][3]["translation"] = json!([1, 7, 5]);
+    maker.json["nodes"][3]["rotation"] = json!([0, 0, 1, 0]);
+    let imported = import(&maker);
+    let reference = imported.sequence.reference();
+    assert_eq!(reference.len(), 9);
+    // In the order of the tree: the body, the hat (below the joints), the hair.
+    let (body, hat, hair) = (&reference[0..3], &reference[3..6], &reference[6..9]);
+    for k in 0..3 {
+        close(hair[k], body[k].to_array());
+        close(hat[k], (body[k] + DVec3::new(0.01, 0.0, 0.0)).to_array());
+    }
+}
+
 #[test]
 fn clips_are_chosen_by_name_by_number_or_because_they_move() {
     let mut maker = triangle();
@@ -254,6 +292,17 @@ fn seams_are_welded_and_counted() {
 }
 
 #[test]
+fn collapsed_faces_go_but_the_others_keep_their_numbers() {
+    let mut maker = triangle();
+    let indices = maker.accessor(&[0, 1, 1, 0, 1, 2], 5121, "SCALAR", 6);
+    maker.json["meshes"][0]["primitives"][0]["indices"] = json!(indices);
+    let imported = import(&maker);
+    assert_eq!(imported.sequence.faces(), [[0, 1, 2]]);
+    assert_eq!((imported.input_faces, imported.sequence.polygons()), (2, Some(&[1][..])));
+    assert!(imported.warnings.iter().any(|w| w.code == "collapsed-faces" && w.message.starts_with("1 face was")));
+}
+
+#[test]
 fn scenes_default_first_or_all() {
     let mut maker = triangle();
     maker.json["nodes"] = json!([{"mesh": 0}, {"mesh": 0, "translation": [5, 0, 0]}]);
@@ -280,7 +329,8 @@ fn external_buffers_come_with_the_file() {
 
 #[test]
 fn damaged_documents_are_refused_in_words() {
-    let cases: [(&str, fn(&mut Maker)); 16] = [
+    type Damage = fn(&mut Maker);
+    let cases: [(&str, Damage); 16] = [
         ("is its own ancestor", |m| m.json["nodes"] = json!([{"mesh": 0, "children": [1]}, {"children": [0]}])),
         ("already has a parent", |m| m.json["nodes"] = json!([{"children": [2]}, {"children": [2]}, {"mesh": 0}])),
         ("has child 7", |m| m.json["nodes"][0]["children"] = json!([7])),
