@@ -3,6 +3,7 @@
 pub mod camera;
 pub mod colormap;
 pub mod colour;
+pub mod frame;
 #[cfg(all(target_arch = "wasm32", feature = "page"))]
 pub mod gpu;
 pub mod motion;
@@ -10,4 +11,5 @@ pub mod normals;
 pub mod paint;
 pub mod palette;
 pub mod picking;
+pub mod stage;
 pub mod surface;

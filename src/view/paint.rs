@@ -1,7 +1,7 @@
 //! What colour each face has, which edges have a line, and what is marked: two words a face for the shaders.
 
-use super::colour::Srgb;
 use super::colormap::ColourMap;
+use super::colour::Srgb;
 use super::palette::Palette;
 use super::surface::Surface;
 
@@ -131,9 +131,7 @@ impl Paint {
         let mut wish: Vec<Option<usize>> = best.iter().map(|b| b.1).collect();
         for part in 0..count {
             let rival = |&other: &usize| {
-                other != part
-                    && best[other].1 == best[part].1
-                    && (best[other].0, part) > (best[part].0, other)
+                other != part && best[other].1 == best[part].1 && (best[other].0, part) > (best[part].0, other)
             };
             if wish[part].is_some() && (0..count).any(|o| rival(&o)) {
                 wish[part] = None;
@@ -151,7 +149,8 @@ mod tests {
     /// A strip of eight triangles.
     fn strip() -> (Motion, Surface) {
         let points: Vec<f32> = (0..10).flat_map(|i| [(i / 2) as f32, (i % 2) as f32, 0.0]).collect();
-        let faces: Vec<u32> = (0..8).flat_map(|i| if i % 2 == 0 { [i, i + 2, i + 1] } else { [i, i + 1, i + 2] }).collect();
+        let faces: Vec<u32> =
+            (0..8).flat_map(|i| if i % 2 == 0 { [i, i + 2, i + 1] } else { [i, i + 1, i + 2] }).collect();
         let motion = Motion::new(&faces, &points).unwrap();
         let surface = Surface::new(&motion);
         (motion, surface)

@@ -31,11 +31,7 @@ pub fn pick(ray: Ray, faces: &[[u32; 3]], positions: &[Vec3]) -> Option<Hit> {
             found = Some((face as u32, u, v));
         }
     }
-    found.map(|(face, u, v)| Hit {
-        face,
-        weights: [1.0 - u - v, u, v],
-        point: ray.origin + ray.direction * nearest,
-    })
+    found.map(|(face, u, v)| Hit { face, weights: [1.0 - u - v, u, v], point: ray.origin + ray.direction * nearest })
 }
 
 /// Length along the ray and the weights of `b` and `c` where the ray meets the triangle.

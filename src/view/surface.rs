@@ -208,9 +208,8 @@ mod tests {
 
     /// Two triangles that share an edge by place, not by number; `z` bends the second.
     fn seam(z: f32) -> Motion {
-        let reference = [
-            [0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [1.0, 0.0, 0.0], [1.0, 1.0, z], [0.0, 1.0, 0.0],
-        ];
+        let reference =
+            [[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [1.0, 0.0, 0.0], [1.0, 1.0, z], [0.0, 1.0, 0.0]];
         Motion::new(&[0, 1, 2, 3, 4, 5], reference.as_flattened()).unwrap()
     }
 
@@ -254,8 +253,7 @@ mod tests {
 
     #[test]
     fn three_faces_on_one_edge() {
-        let reference =
-            [[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, -1.0, 0.0], [0.0, 0.0, 1.0]];
+        let reference = [[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, -1.0, 0.0], [0.0, 0.0, 1.0]];
         let motion = Motion::new(&[0, 1, 2, 1, 0, 3, 0, 1, 4], reference.as_flattened()).unwrap();
         let bits = Surface::new(&motion).boundary_bits(motion.faces(), &[0, 0, 1]);
         assert_eq!(bits.iter().map(|b| b & 7).collect::<Vec<_>>(), [1, 1, 1]);
