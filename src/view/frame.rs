@@ -82,9 +82,9 @@ impl Theme {
             [oklch(0.66, 0.2, 36.0), oklch(0.6, 0.15, 255.0), oklch(0.82, 0.16, 95.0), oklch(0.62, 0.2, 350.0)];
         let light = Vec4::new;
         Self {
-            key_light: light(0.70, 0.685, 0.66, if dark { 0.35 } else { 0.16 }),
-            sky_light: if dark { light(0.30, 0.31, 0.33, 0.0) } else { light(0.36, 0.37, 0.39, 0.0) },
-            ground_light: if dark { light(0.20, 0.185, 0.165, 0.0) } else { light(0.34, 0.315, 0.28, 0.0) },
+            key_light: light(0.94, 0.92, 0.885, if dark { 0.35 } else { 0.16 }),
+            sky_light: if dark { light(0.30, 0.31, 0.33, 0.0) } else { light(0.37, 0.38, 0.40, 0.0) },
+            ground_light: if dark { light(0.20, 0.185, 0.165, 0.0) } else { light(0.33, 0.30, 0.265, 0.0) },
             back_middle: with(middle, 0.0),
             back_rim: with(rim, shadows),
             line_colour: with(oklch(0.22, 0.02, 50.0), 0.88),

@@ -10,7 +10,7 @@ use glam::Vec3;
 
 /// Direction to the key light in the camera's horizontal axes: from the left, from above, from the front. The light
 /// turns with the camera, as if the figure stood on a turntable.
-const KEY: Vec3 = Vec3::new(-0.5, 1.0, 0.5);
+const KEY: Vec3 = Vec3::new(-0.55, 1.0, 0.7);
 
 /// Everything that a picture is made of.
 #[derive(Clone, Debug)]
@@ -278,7 +278,7 @@ impl Stage {
         let (near, far) = camera.range(ball);
         let (cx, cy) = self.window.centre();
         let level = right.cross(Vec3::Y);
-        let key = (right * KEY.x + Vec3::Y * KEY.y - level * KEY.z).normalize();
+        let key = (right * KEY.x + Vec3::Y * KEY.y + level * KEY.z).normalize();
         let floor = self.whole().low.y;
         // The middle between the figure and its shadow.
         let middle = ball.centre - Vec3::new(key.x, 0.0, key.z) / key.y * (0.5 * (ball.centre.y - floor));
