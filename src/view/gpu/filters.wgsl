@@ -8,9 +8,9 @@ fn spread(at: vec2i, along: vec2i) -> vec4f {
     let size = vec2i(textureDimensions(source));
     var sum = vec4f(0.0);
     var weight = vec4f(0.0);
-    for (var k = -20; k <= 20; k++) {
+    for (var k = -13; k <= 13; k++) {
         let x = f32(k);
-        let w = exp(-x * x / (2.0 * vec4f(2.0, 26.0, 110.0, 1.0)));
+        let w = exp(-x * x / (2.0 * vec4f(1.0, 11.0, 46.0, 1.0)));
         let p = at + along * k;
         let inside = all(p >= vec2i(0)) && all(p < size);
         sum += select(vec4f(0.0), w * textureLoad(source, clamp(p, vec2i(0), size - 1), 0), inside);
@@ -55,11 +55,12 @@ fn hollow(in: Screen) -> @location(0) vec4f {
     let reach = 0.16 * stage.eye.w;
     let pixels = 0.5 * reach * stage.back.w / -p.z;
     let turn = noise(floor(in.position.xy)) * 6.2831853;
+    var towards = vec2f(cos(turn), sin(turn)) * pixels;
     var sum = 0.0;
     for (var k = 0; k < 10; k++) {
-        let share = (f32(k) + 0.5) / 10.0;
-        let angle = turn + share * 18.849556;
-        let at = vec2i(in.position.xy + share * pixels * vec2f(cos(angle), sin(angle)));
+        // Three turns of a spiral.
+        let at = vec2i(in.position.xy + (f32(k) + 0.5) / 10.0 * towards);
+        towards = vec2f(-0.309017 * towards.x - 0.9510565 * towards.y, 0.9510565 * towards.x - 0.309017 * towards.y);
         let other = textureLoad(source, clamp(at, vec2i(0), size - 1), 0);
         if other.x < 0.9999 {
             let v = place(vec2f(at) + 0.5, depth_of(other)) - p;

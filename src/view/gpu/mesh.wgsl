@@ -110,13 +110,14 @@ fn lit(world: vec3f, normal: vec3f, pixel: vec2f) -> f32 {
     let radius = stage.eye.w;
     let p = stage.light * vec4f(world + normal * 0.02 * radius + stage.key.xyz * 0.01 * radius, 1.0);
     let uv = p.xy * vec2f(0.5, -0.5) + 0.5;
+    // Vogel's spiral, turned by another angle in each pixel.
     let turn = noise(pixel) * 6.2831853;
+    var towards = vec2f(cos(turn), sin(turn)) * 0.018;
     var sum = 0.0;
     for (var k = 0; k < 12; k++) {
-        // Vogel's spiral.
-        let angle = f32(k) * 2.3999632 + turn;
-        let at = sqrt((f32(k) + 0.5) / 12.0) * 0.018;
-        sum += textureSampleCompareLevel(shadow_map, shadow_sampler, uv + at * vec2f(cos(angle), sin(angle)), p.z);
+        let at = uv + sqrt((f32(k) + 0.5) / 12.0) * towards;
+        sum += textureSampleCompareLevel(shadow_map, shadow_sampler, at, p.z);
+        towards = vec2f(-0.7373688 * towards.x - 0.6754903 * towards.y, 0.6754903 * towards.x - 0.7373688 * towards.y);
     }
     return sum / 12.0;
 }
@@ -201,9 +202,16 @@ fn picture_fragment(in: Seen) -> @location(0) vec4f {
     // Seen from inside. A back face that peeps over the silhouette keeps its normal, or the outline would be dotted.
     n *= select(1.0, -1.0, dot(n, towards) < -0.25);
     let depth = (dot(stage.eye.xyz - in.world, stage.back.xyz) - stage.right.w) / (stage.up.w - stage.right.w);
-    let hollow = open(pixel, depth);
     let wrapped = clamp((dot(n, stage.key.xyz) + 0.3) / 1.3, 0.0, 1.0);
-    let shade = mix(1.0, lit(in.world, n, pixel), stage.key.w);
+    var hollow = 1.0;
+    var shade = 1.0;
+    // Plain drawing has no shadows.
+    if stage.key.w > 0.0 {
+        hollow = open(pixel, depth);
+        if wrapped > 0.0 {
+            shade = mix(1.0, lit(in.world, n, pixel), stage.key.w);
+        }
+    }
     let key = stage.key_light.rgb * pow(wrapped, 1.4) * shade;
     // What stands under the body or near the ground sees less of both sky and lit ground.
     let above = (in.world.y - stage.ground.y) / stage.eye.w;

@@ -26,7 +26,7 @@ use wgpu::{
 /// Side of the shadow map, pixels: small, because its edges are wanted soft.
 const SHADOW_SIDE: u32 = 512;
 /// Side of the ground map, pixels.
-const GROUND_SIDE: u32 = 256;
+const GROUND_SIDE: u32 = 160;
 
 /// Draws frames.
 pub struct Renderer {
@@ -169,15 +169,17 @@ impl Renderer {
             pass.set_bind_group(1, source, &[]);
             pass.draw(0..3, 0..1);
         };
-        surface(&mut begin(e, None, Some((&fixed.shadow, StoreOp::Store))), &p.shadow);
         let over = Some((&fixed.ground[0], None, Color::TRANSPARENT));
         surface(&mut begin(e, over, Some((&fixed.ground_depth, StoreOp::Discard))), &p.ground);
         filter(e, &p.spread[0], &fixed.spread[0], &fixed.ground[1]);
         filter(e, &p.spread[1], &fixed.spread[1], &fixed.ground[0]);
-        let deep = Some((&sized.deep, None, Color::WHITE));
-        surface(&mut begin(e, deep, Some((&sized.deep_depth, StoreOp::Discard))), &p.depth);
-        filter(e, &p.hollow[0], &sized.hollow_groups[0], &sized.hollow[0]);
-        filter(e, &p.hollow[1], &sized.hollow_groups[1], &sized.hollow[1]);
+        if frame.shadows() {
+            surface(&mut begin(e, None, Some((&fixed.shadow, StoreOp::Store))), &p.shadow);
+            let deep = Some((&sized.deep, None, Color::WHITE));
+            surface(&mut begin(e, deep, Some((&sized.deep_depth, StoreOp::Discard))), &p.depth);
+            filter(e, &p.hollow[0], &sized.hollow_groups[0], &sized.hollow[0]);
+            filter(e, &p.hollow[1], &sized.hollow_groups[1], &sized.hollow[1]);
+        }
         {
             let view = picture.texture.create_view(&Default::default());
             let target = Some((&sized.colour, Some(&view), Color::BLACK));
