@@ -78,6 +78,9 @@ fn hollow_blur(in: Screen) -> @location(0) vec4f {
     let size = vec2i(textureDimensions(source));
     let at = vec2i(in.position.xy);
     let here = textureLoad(source, at, 0);
+    if here.y > 0.9999 {
+        return here;
+    }
     let depth = here.y + here.z / 255.0;
     var sum = 0.0;
     var weight = 0.0;
