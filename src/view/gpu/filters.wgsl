@@ -29,7 +29,28 @@ fn spread_down(in: Screen) -> @location(0) vec4f {
     return spread(vec2i(in.position.xy), vec2i(0, 1));
 }
 
-// --- shade in hollows, at half the resolution
+// --- light at half the resolution: shade in hollows and the shadow of the key light
+
+@group(2) @binding(0) var shadow_map: texture_depth_2d;
+@group(2) @binding(1) var shadow_sampler: sampler_comparison;
+
+// Share of the key light that arrives, over a wide soft edge.
+fn lit(world: vec3f, normal: vec3f, turn: f32) -> f32 {
+    let radius = stage.eye.w;
+    let p = stage.light * vec4f(world + normal * 0.02 * radius + stage.key.xyz * 0.01 * radius, 1.0);
+    let uv = p.xy * vec2f(0.5, -0.5) + 0.5;
+    // Vogel's spiral, turned by another angle in each pixel.
+    var towards = vec2f(cos(turn), sin(turn)) * 0.018;
+    var sum = 0.0;
+    for (var k = 0; k < 8; k++) {
+        let at = uv + sqrt((f32(k) + 0.5) / 8.0) * towards;
+        sum += textureSampleCompareLevel(shadow_map, shadow_sampler, at, p.z);
+        towards = vec2f(-0.7373688 * towards.x - 0.6754903 * towards.y, 0.6754903 * towards.x - 0.7373688 * towards.y);
+    }
+    return sum / 8.0;
+}
+
+// Shade in hollows:
 // M. McGuire et al., The Alchemy screen-space ambient obscurance algorithm, HPG 2011.
 
 fn depth_of(s: vec4f) -> f32 {
@@ -70,7 +91,8 @@ fn hollow(in: Screen) -> @location(0) vec4f {
         }
     }
     let open = clamp(1.0 - 2.6 * sum / 10.0, 0.0, 1.0);
-    return vec4f(open, here.x, here.y, 1.0);
+    let from_eye = stage.right.xyz * p.x + stage.up.xyz * p.y + stage.back.xyz * p.z;
+    return vec4f(open, here.x, here.y, lit(stage.eye.xyz + from_eye, world, turn));
 }
 
 @fragment
@@ -82,16 +104,17 @@ fn hollow_blur(in: Screen) -> @location(0) vec4f {
         return here;
     }
     let depth = here.y + here.z / 255.0;
-    var sum = 0.0;
+    var sum = vec2f(0.0);
     var weight = 0.0;
     for (var y = -2; y <= 2; y++) {
         for (var x = -2; x <= 2; x++) {
             let s = textureLoad(source, clamp(at + vec2i(x, y), vec2i(0), size - 1), 0);
             let d = (s.y + s.z / 255.0 - depth) * 40.0;
             let w = exp(-d * d);
-            sum += w * s.x;
+            sum += w * s.xw;
             weight += w;
         }
     }
-    return vec4f(sum / weight, here.y, here.z, 1.0);
+    let light = sum / weight;
+    return vec4f(light.x, here.y, here.z, light.y);
 }

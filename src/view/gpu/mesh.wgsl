@@ -86,8 +86,6 @@ fn depth_fragment(in: Deep, @builtin(front_facing) front: bool) -> @location(0) 
 
 // --- the picture
 
-@group(2) @binding(0) var shadow_map: texture_depth_2d;
-@group(2) @binding(1) var shadow_sampler: sampler_comparison;
 @group(2) @binding(2) var ground_map: texture_2d<f32>;
 @group(2) @binding(3) var ground_sampler: sampler;
 @group(2) @binding(4) var hollows: texture_2d<f32>;
@@ -129,30 +127,14 @@ fn picture_vertex(@builtin(vertex_index) i: u32) -> Seen {
     return Seen(stage.view * vec4f(p, 1.0), p, normal_of(c), weights, albedo_of(i / 3u, paint), paint.y & 63u);
 }
 
-// Share of the key light that arrives, over a wide soft edge.
-fn lit(world: vec3f, normal: vec3f, pixel: vec2f) -> f32 {
-    let radius = stage.eye.w;
-    let p = stage.light * vec4f(world + normal * 0.02 * radius + stage.key.xyz * 0.01 * radius, 1.0);
-    let uv = p.xy * vec2f(0.5, -0.5) + 0.5;
-    // Vogel's spiral, turned by another angle in each pixel.
-    let turn = noise(pixel) * 6.2831853;
-    var towards = vec2f(cos(turn), sin(turn)) * 0.018;
-    var sum = 0.0;
-    for (var k = 0; k < 12; k++) {
-        let at = uv + sqrt((f32(k) + 0.5) / 12.0) * towards;
-        sum += textureSampleCompareLevel(shadow_map, shadow_sampler, at, p.z);
-        towards = vec2f(-0.7373688 * towards.x - 0.6754903 * towards.y, 0.6754903 * towards.x - 0.7373688 * towards.y);
-    }
-    return sum / 12.0;
-}
-
-// Shade in hollows, taken from the four nearest pixels of the half-resolution map that lie at the same depth.
-fn open(pixel: vec2f, depth: f32) -> f32 {
+// How open the surface is to the sky, and the share of the key light that arrives: from the four nearest pixels of
+// the half-resolution map, as far as they lie at the same depth.
+fn light_here(pixel: vec2f, depth: f32) -> vec2f {
     let size = vec2i(textureDimensions(hollows));
     let at = pixel * 0.5 - 0.5;
     let first = vec2i(floor(at));
     let f = at - floor(at);
-    var sum = 0.0;
+    var sum = vec2f(0.0);
     var weight = 0.0;
     for (var k = 0; k < 4; k++) {
         let step = vec2i(k & 1, k >> 1u);
@@ -160,7 +142,7 @@ fn open(pixel: vec2f, depth: f32) -> f32 {
         let near = abs(h.y + h.z / 255.0 - depth);
         let bilinear = mix(1.0 - f.x, f.x, f32(step.x)) * mix(1.0 - f.y, f.y, f32(step.y));
         let w = (bilinear + 1e-3) / (1e-3 + near * near * 4000.0);
-        sum += w * h.x;
+        sum += w * h.xw;
         weight += w;
     }
     return sum / weight;
@@ -219,15 +201,13 @@ fn picture_fragment(in: Seen) -> @location(0) vec4f {
     n *= select(1.0, -1.0, dot(n, towards) < -0.25);
     let depth = (dot(stage.eye.xyz - in.world, stage.back.xyz) - stage.right.w) / (stage.up.w - stage.right.w);
     let wrapped = clamp((dot(n, stage.key.xyz) + 0.3) / 1.3, 0.0, 1.0);
-    var hollow = 1.0;
-    var shade = 1.0;
+    var arrives = vec2f(1.0);
     // Plain drawing has no shadows.
     if stage.key.w > 0.0 {
-        hollow = open(pixel, depth);
-        if wrapped > 0.0 {
-            shade = mix(1.0, lit(in.world, n, pixel), stage.key.w);
-        }
+        arrives = light_here(pixel, depth);
     }
+    let hollow = arrives.x;
+    let shade = mix(1.0, arrives.y, stage.key.w);
     let key = stage.key_light.rgb * wrapped * (0.3 + 0.7 * wrapped) * shade;
     // What stands under the body or near the ground sees less of both sky and lit ground.
     let above = (in.world.y - stage.ground.y) / stage.eye.w;
