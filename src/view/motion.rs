@@ -105,8 +105,7 @@ impl Motion {
     /// otherwise it stays.
     pub fn at(&self, t: f32, loops: bool) -> Moment {
         let count = self.poses();
-        // Also catches NaN.
-        if count == 0 || !(t > -1.0) {
+        if count == 0 || t.is_nan() || t <= -1.0 {
             return Moment { from: 0, to: 0, part: 0.0 };
         }
         if t < 0.0 {
@@ -153,7 +152,7 @@ impl Motion {
 
 fn points(numbers: &[f32]) -> Result<Vec<Vec3>, &'static str> {
     // Beyond this, squares in the shaders overflow.
-    if numbers.iter().any(|x| !(x.abs() < 1e15)) {
+    if numbers.iter().any(|x| x.is_nan() || x.abs() >= 1e15) {
         return Err("A coordinate of this mesh is not a usable number.");
     }
     Ok(numbers.chunks_exact(3).map(Vec3::from_slice).collect())
