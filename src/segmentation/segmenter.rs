@@ -10,7 +10,7 @@ use super::smoothing;
 use super::{Merge, Method, Parameters, Part, Segmentation, SegmentationError, Smoothing, Steps};
 use super::{choice, finest, merge_tree, refinement};
 use crate::clock;
-use crate::mesh::{DualGraph, face, near};
+use crate::mesh::{DualGraph, face, near, weld};
 use crate::observer::Observer;
 use crate::sequence::Sequence;
 use crate::warning::Warning;
@@ -18,6 +18,9 @@ use glam::DVec3;
 
 /// Finest parts of the merge tree: enough that every joint lies between two of them.
 const FINEST: usize = 240;
+
+/// Vertices that stay closer than this (at unit diagonal) in every pose are one point of the surface.
+const SEAM: f64 = 1e-7;
 
 /// Landmark faces that stand for all faces in the averages of Eq. 7.
 const LANDMARKS: usize = 64;
@@ -107,7 +110,7 @@ impl Segmenter {
         let diagonal = sequence.diagonal();
         let scale = if diagonal > 0.0 { 1.0 / diagonal } else { 1.0 };
         let reference: Vec<DVec3> = sequence.reference().iter().map(|&p| p * scale).collect();
-        let graph = DualGraph::new(sequence.faces());
+        let graph = DualGraph::new(&joined_faces(sequence, diagonal));
         let areas = face::areas(sequence.faces(), &reference);
         let geodesic = graph.geodesic_lengths(sequence.faces(), &reference);
         let edge_length = graph.shared_lengths(&reference);
@@ -307,6 +310,14 @@ impl Segmenter {
         }
         parts
     }
+}
+
+/// The faces with vertices that agree in every pose taken as one, so that a seam of a file is no boundary of the mesh.
+fn joined_faces(sequence: &Sequence, diagonal: f64) -> Vec<[u32; 3]> {
+    let poses: Vec<&[DVec3]> =
+        std::iter::once(sequence.reference()).chain(sequence.poses().iter().map(|p| p.positions.as_slice())).collect();
+    let stands = weld::weld(&poses, SEAM * diagonal);
+    sequence.faces().iter().map(|face| face.map(|v| stands[v as usize])).collect()
 }
 
 fn rms(sum: f64, faces: usize, poses: usize) -> f64 {
