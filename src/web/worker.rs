@@ -27,6 +27,15 @@ pub struct Engine {
     sequence: Option<Sequence>,
 }
 
+/// What [`Engine::about`] says.
+#[derive(Serialize)]
+struct About {
+    parameters: Parameters,
+    options: Options,
+    recipe: Recipe,
+    creatures: &'static [&'static str],
+}
+
 /// The small fields of a sequence; the big ones go beside them as typed arrays.
 #[derive(Serialize)]
 struct Opened<'a> {
@@ -52,6 +61,17 @@ impl Engine {
     #[wasm_bindgen(constructor)]
     pub fn new() -> Self {
         Self::default()
+    }
+
+    /// What the page must know before it asks for anything: the default parameters, options and recipe in their
+    /// serde forms, and the names of the creatures.
+    pub fn about() -> Reply {
+        plain(&About {
+            parameters: Parameters::default(),
+            options: Options::default(),
+            recipe: Recipe::default(),
+            creatures: zoo::NAMES,
+        })
     }
 
     /// Opens files, `[{name, bytes: Uint8Array}]`, with [`Options`] in their serde form. What was open stays open

@@ -1,0 +1,97 @@
+/**
+ * What lies under the picture: the views of the step, and what belongs to the view that is shown — the slider for
+ * the number of parts, a legend in numbers, or a stepper.
+ */
+import { choice, slider } from './controls.js';
+import { h, iconButton, show } from './dom.js';
+import { number, plural } from './format.js';
+import { colourBar } from './plot.js';
+import { VIEWS } from './steps/views.js';
+
+/** The slider ends here even if the finest parts are more. */
+const MOST_PARTS = 48;
+
+/** @param {HTMLElement} host @param {import('./app.js').App} app */
+export function dock(host, app) {
+  const views = h('div', { class: 'views' });
+  const legend = h('div', { class: 'legend' });
+  const partsControl = partsSlider(app);
+  show(host, views, legend);
+
+  const showViews = () => {
+    show(views, choice('View', VIEWS.map(({ id, label, title }) => [id, label, title]), app.view, (id) => app.setView(id), 'ribbon'));
+    views.querySelector(':checked')?.parentElement.scrollIntoView?.({ block: 'nearest', inline: 'center' });
+  };
+  const update = () => {
+    host.hidden = app.step !== 'parts' || !app.result;
+    if (host.hidden) return;
+    if (views.querySelector(':checked')?.value !== app.view) showViews();
+    const said = VIEWS.find(({ id }) => id === app.view).legend(app);
+    if (said.kind === 'parts') {
+      partsControl.update();
+      if (legend.firstChild !== partsControl.element) show(legend, partsControl.element);
+    } else if (said.kind === 'steps') showSteps(legend, app, said);
+    else show(legend, said.kind === 'scalar' ? scalarLegend(app, said) : h('p', { class: 'small' }, said.text));
+  };
+  app.on('view step result', update);
+  update();
+}
+
+function partsSlider(app) {
+  const words = h('p', { class: 'small faint' }, 'By the letter of the paper, the method decides how many parts there are.');
+  const control = slider({
+    label: 'Number of parts', low: 1, high: MOST_PARTS, step: 1, reading: (value) => String(value),
+    input: (value) => app.setParts(value), reset: () => app.setParts(null),
+  });
+  control.element.classList.add('wide');
+  const range = control.element.querySelector('input');
+  const element = h('div', {}, control.element, words);
+  return {
+    element,
+    update() {
+      const { result } = app;
+      const counts = result.curve.map(({ parts }) => parts);
+      const few = counts.length === 0;
+      control.element.hidden = few;
+      words.hidden = !few;
+      if (few) {
+        words.textContent = app.parameters.method === 'paper'
+          ? `${plural(result.parts.length, 'part')}: by the letter of the paper, the method decides how many.`
+          : 'It moves as one: there is nothing to divide.';
+        return;
+      }
+      range.min = Math.min(...counts);
+      range.max = Math.min(Math.max(...counts) + 1, Math.max(MOST_PARTS, result.parts.length));
+      // While it is dragged the slider is ahead of the answer.
+      const shown = app.wanted ?? result.parts.length;
+      control.set(shown, String(shown), app.wanted != null && app.wanted !== result.automatic.parts.length);
+    },
+  };
+}
+
+function scalarLegend(app, { map, range: [low, high], unit }) {
+  const colours = app.stage.colourMap(map);
+  return h('div', { class: 'scale' },
+    h('span', { class: 'number' }, number(low, 2)),
+    colours ? colourBar(colours) : h('span', {}, '–'),
+    h('span', { class: 'number' }, `≥ ${number(high, 2)}`),
+    h('span', { class: 'small faint' }, unit));
+}
+
+function showSteps(legend, app, { name, index, count, text, go }) {
+  // The buttons stay the same elements while one steps, so that the keyboard keeps its place.
+  if (legend.dataset.go !== go || !legend.querySelector('.stepper')) {
+    const step = (by) => () => app[go](app[go === 'setFeature' ? 'feature' : 'round'] + by);
+    show(legend, h('div', { class: 'stepper' },
+      iconButton('previous', `Previous ${name.toLowerCase()}`, step(-1)),
+      h('span', { class: 'number' }),
+      iconButton('next', `Next ${name.toLowerCase()}`, step(1)),
+      h('span', { class: 'small faint' })));
+    legend.dataset.go = go;
+  }
+  const [previous, where, next, what] = legend.firstChild.children;
+  where.textContent = count ? `${name} ${index + 1} of ${count}` : `No ${name.toLowerCase()}`;
+  what.textContent = text;
+  previous.disabled = index <= 0;
+  next.disabled = index >= count - 1;
+}
