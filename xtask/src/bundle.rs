@@ -1,0 +1,115 @@
+//! The two wasm bundles and the folder of static files around them.
+//!
+//! ```text
+//! dist/index.html           as it is in the project
+//! dist/www/…                as it is in the project
+//! dist/pkg/page.js          loads page_bg.wasm: the crate with feature `page`
+//! dist/pkg/worker.js        loads worker_bg.wasm: the crate with feature `worker`
+//! ```
+
+use crate::setup::{self, WASM};
+use crate::{dist, shell};
+use anyhow::{Context, Result, bail};
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::time::{Instant, UNIX_EPOCH};
+use wasm_bindgen_cli_support::Bindgen;
+
+/// One of the two wasm files, by the name that its feature, its release profile and its files share.
+struct Bundle {
+    name: &'static str,
+    /// The most that its JavaScript and wasm together may weigh, gzipped.
+    budget: usize,
+}
+
+const BUNDLES: [Bundle; 2] = [Bundle { name: "page", budget: 1_200_000 }, Bundle { name: "worker", budget: 1_000_000 }];
+
+/// Where the result lies.
+pub fn folder() -> PathBuf {
+    shell::root().join("dist")
+}
+
+/// Builds everything that is not up to date into `dist/`, and holds the bundles to their budgets unless `dev`.
+pub fn build(dev: bool) -> Result<()> {
+    let start = Instant::now();
+    setup::wasm_target()?;
+    setup::wasm_bindgen_version()?;
+    let root = shell::root();
+    let mut files = dist::Files::default();
+    files.add_file("index.html", &root.join("index.html"))?;
+    files.add_folder("www", &root.join("www"))?;
+    for bundle in &BUNDLES {
+        let wasm = compile(bundle, dev)?;
+        files.add_folder("pkg", &bind(bundle, &wasm, dev)?)?;
+    }
+    dist::write(&files, &folder())?;
+    report(&files, dev)?;
+    println!("dist/ is ready ({:.1} s)", start.elapsed().as_secs_f64());
+    Ok(())
+}
+
+/// Compiles the crate with the bundle's feature and returns the path of the wasm.
+///
+/// The quick way uses the profile of tests, so that most of what it needs is there already.
+fn compile(bundle: &Bundle, dev: bool) -> Result<PathBuf> {
+    let profile = if dev { "dev" } else { bundle.name };
+    let mut cargo = shell::cargo(["build", "--lib", "--target", WASM, "--no-default-features"]);
+    cargo.args(["--features", bundle.name, "--profile", profile]);
+    shell::run(cargo)?;
+    let folder = if dev { "debug" } else { bundle.name };
+    Ok(shell::target().join(WASM).join(folder).join("sinew.wasm"))
+}
+
+/// Runs wasm-bindgen, unless it has already run on just this file, and returns the folder with what it wrote.
+fn bind(bundle: &Bundle, wasm: &Path, dev: bool) -> Result<PathBuf> {
+    let name = bundle.name;
+    let folder = shell::target().join("xtask").join(if dev { format!("{name}-dev") } else { name.to_owned() });
+    let (output, stamp) = (folder.join("pkg"), folder.join("stamp"));
+    let mark = mark(wasm)?;
+    if fs::read_to_string(&stamp).is_ok_and(|old| old == mark) {
+        return Ok(output);
+    }
+    if output.exists() {
+        fs::remove_dir_all(&output)?;
+    }
+    // The default path of the wasm beside the JavaScript is kept, so that the page need not know it.
+    let mut bindgen = Bindgen::new();
+    bindgen.web(true)?.typescript(false).omit_default_module_path(false).remove_producers_section(true);
+    if !dev {
+        bindgen.remove_name_section(true);
+    }
+    bindgen.input_path(wasm).out_name(name).generate(&output).context("wasm-bindgen failed")?;
+    fs::write(stamp, mark)?;
+    Ok(output)
+}
+
+/// What tells one build of a file from another: its length, when it was written, and the wasm-bindgen that reads it.
+fn mark(wasm: &Path) -> Result<String> {
+    let about = fs::metadata(wasm).with_context(|| format!("{} was not built", wasm.display()))?;
+    let time = about.modified()?.duration_since(UNIX_EPOCH)?.as_nanos();
+    let program = fs::metadata(std::env::current_exe()?)?.len();
+    Ok(format!("{} {time} {program}", about.len()))
+}
+
+/// Prints what the visitor downloads, and fails where a bundle is over its budget.
+fn report(files: &dist::Files, dev: bool) -> Result<()> {
+    let mut over = Vec::new();
+    println!("{:<10} {:>12} {:>14}", "", "bytes", "gzipped");
+    for bundle in &BUNDLES {
+        let prefix = format!("pkg/{}", bundle.name);
+        let size = files.size(|name| name.starts_with(&prefix));
+        println!("{:<10} {:>12} {:>14}", bundle.name, size.raw, size.gzipped);
+        if size.gzipped > bundle.budget {
+            over.push(format!(
+                "the {} bundle is {} bytes gzipped, over its budget of {}",
+                bundle.name, size.gzipped, bundle.budget
+            ));
+        }
+    }
+    let rest = files.size(|name| !name.starts_with("pkg/"));
+    println!("{:<10} {:>12} {:>14}", "the rest", rest.raw, rest.gzipped);
+    if !over.is_empty() && !dev {
+        bail!("{}", over.join("; "));
+    }
+    Ok(())
+}

@@ -1,0 +1,55 @@
+//! What a fresh machine lacks: set up where it can be, else one sentence that says what to install.
+
+use crate::shell;
+use anyhow::{Context, Result, bail};
+
+/// The target of both bundles.
+pub const WASM: &str = "wasm32-unknown-unknown";
+
+/// Makes sure that the compiler has a standard library for wasm32.
+pub fn wasm_target() -> Result<()> {
+    let mut rustc = shell::program("rustc");
+    rustc.args(["--print", "target-libdir", "--target", WASM]);
+    let folder = shell::output(rustc).context("the Rust compiler is missing: install it from https://rustup.rs")?;
+    if std::fs::read_dir(&folder).is_ok_and(|mut entries| entries.next().is_some()) {
+        return Ok(());
+    }
+    println!("adding the compiler's target {WASM}");
+    let mut rustup = shell::program("rustup");
+    rustup.args(["target", "add", WASM]);
+    shell::run(rustup).with_context(|| {
+        format!("the Rust compiler cannot build for {WASM}: run `rustup target add {WASM}`, or install that target's standard library from your system's packages")
+    })
+}
+
+/// Checks that the wasm-bindgen built into this program is the one that the crate is locked to.
+pub fn wasm_bindgen_version() -> Result<()> {
+    let lock = std::fs::read_to_string(shell::root().join("Cargo.lock")).context("Cargo.lock cannot be read")?;
+    let of = |package| locked_version(&lock, package).with_context(|| format!("Cargo.lock has no {package}"));
+    let (crate_, tool) = (of("wasm-bindgen")?, of("wasm-bindgen-cli-support")?);
+    if crate_ != tool {
+        bail!(
+            "wasm-bindgen is locked at {crate_} but wasm-bindgen-cli-support at {tool}; they must be the same: set `wasm-bindgen-cli-support = \"={crate_}\"` in xtask/Cargo.toml and `wasm-bindgen-cli = \"={crate_}\"` in xtask/test-runner/Cargo.toml"
+        );
+    }
+    Ok(())
+}
+
+/// The version of a package in the text of a Cargo.lock.
+fn locked_version<'a>(lock: &'a str, package: &str) -> Option<&'a str> {
+    let name = format!("name = \"{package}\"");
+    let mut lines = lock.lines().skip_while(|line| *line != name);
+    lines.nth(1)?.strip_prefix("version = \"")?.strip_suffix('"')
+}
+
+#[cfg(test)]
+mod tests {
+    use super::locked_version;
+
+    #[test]
+    fn finds_a_package_by_its_whole_name() {
+        let lock = "[[package]]\nname = \"wasm-bindgen-macro\"\nversion = \"0.1.0\"\n\n[[package]]\nname = \"wasm-bindgen\"\nversion = \"0.2.130\"\n";
+        assert_eq!(locked_version(lock, "wasm-bindgen"), Some("0.2.130"));
+        assert_eq!(locked_version(lock, "bindgen"), None);
+    }
+}
