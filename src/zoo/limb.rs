@@ -1,0 +1,202 @@
+//! A limb: a smooth tube through stations, with a radius and a flattening at each.
+//!
+//! A designer thinks of a leg or a neck as a line with a thickness here and there. [`Limb::new`] draws a smooth
+//! curve through the stations (a cubic Hermite spline whose tangents are those of the parabola through three
+//! neighbours) and cuts it into short round-ended cones with elliptic cross-sections; their union is the limb.
+
+use glam::DVec3;
+
+/// Cones between two stations.
+const CUTS: usize = 5;
+
+/// The thickness of a limb at one place.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Station {
+    /// The centre of the cross-section.
+    pub at: DVec3,
+    /// Its radius.
+    pub radius: f64,
+    /// Its radius along the limb's flat direction as a share of `radius` (1: round).
+    pub flat: f64,
+}
+
+/// A station at `x, y, z` with a radius and a flattening.
+pub const fn station(x: f64, y: f64, z: f64, radius: f64, flat: f64) -> Station {
+    Station { at: DVec3::new(x, y, z), radius, flat }
+}
+
+/// A short cone of a limb: from a station-like end to the next.
+#[derive(Clone, Copy, Debug)]
+pub struct Cone {
+    from: DVec3,
+    along: DVec3,
+    inverse_length2: f64,
+    radius: [f64; 2],
+    flat: [f64; 2],
+    /// Arc length from the start of the limb at both ends.
+    arc: [f64; 2],
+    direction: DVec3,
+}
+
+/// Where a point lies with respect to a cone or a limb.
+#[derive(Clone, Copy, Debug)]
+pub struct Near {
+    /// Signed distance (first-order where the cross-section is elliptic), negative inside.
+    pub distance: f64,
+    /// Direction away from the surface, of length about 1.
+    pub gradient: DVec3,
+    /// Arc length along the limb of the nearest place on its centre line.
+    pub arc: f64,
+    /// Radius there, along the flat direction (the smaller one).
+    pub radius: f64,
+}
+
+impl Cone {
+    /// Signed distance, its gradient and where on the centre line.
+    pub fn near(&self, p: DVec3) -> Near {
+        let from = p - self.from;
+        let t = (from.dot(self.along) * self.inverse_length2).clamp(0.0, 1.0);
+        let radius = self.radius[0] + t * (self.radius[1] - self.radius[0]);
+        let flat = self.flat[0] + t * (self.flat[1] - self.flat[0]);
+        let q = from - t * self.along;
+        // Stretch the flat direction until the cross-section is round, measure there, and divide by how much the
+        // stretching steepens the distance.
+        let stretch = 1.0 / flat - 1.0;
+        let round = q + self.direction * (q.dot(self.direction) * stretch);
+        let steep = round + self.direction * (round.dot(self.direction) * stretch);
+        let (length, steepness) = (round.length(), steep.length());
+        let arc = self.arc[0] + t * (self.arc[1] - self.arc[0]);
+        let thin = radius * flat.min(1.0);
+        if steepness < 1e-12 {
+            return Near { distance: -thin, gradient: self.direction, arc, radius: thin };
+        }
+        Near { distance: (length - radius) * length / steepness, gradient: steep / steepness, arc, radius: thin }
+    }
+
+    /// A ball that holds the cone: centre and radius.
+    pub fn ball(&self) -> (DVec3, f64) {
+        let radius = |end: usize| self.radius[end] * self.flat[end].max(1.0);
+        (self.from + 0.5 * self.along, 0.5 * self.along.length() + radius(0).max(radius(1)))
+    }
+}
+
+/// A smooth tube that follows a chain of bones.
+#[derive(Clone, Debug)]
+pub struct Limb {
+    /// The bones that it follows, from its first station to its last.
+    pub bones: Vec<u32>,
+    /// How wide the seam is where it meets what came before it.
+    pub blend: f64,
+    /// The stations.
+    pub stations: Vec<Station>,
+    /// The direction in which cross-sections are flattened.
+    pub direction: DVec3,
+    /// Limbs of one pair are left and right of each other.
+    pub pair: u32,
+    cones: Vec<Cone>,
+}
+
+impl Limb {
+    /// A limb through `stations` (at least two), flattened along `direction` (unit length).
+    pub fn new(bones: Vec<u32>, blend: f64, pair: u32, direction: DVec3, stations: Vec<Station>) -> Self {
+        let cones = cut(&stations, direction);
+        Self { bones, blend, stations, direction, pair, cones }
+    }
+
+    /// Its image in the plane x = 0, following other bones.
+    pub fn mirrored(&self, bones: Vec<u32>) -> Self {
+        let flip = |p: DVec3| DVec3::new(-p.x, p.y, p.z);
+        let stations = self.stations.iter().map(|s| Station { at: flip(s.at), ..*s }).collect();
+        Self::new(bones, self.blend, self.pair, flip(self.direction), stations)
+    }
+
+    /// The cones, from the first station to the last.
+    pub fn cones(&self) -> &[Cone] {
+        &self.cones
+    }
+
+    /// Where a point lies with respect to the whole limb.
+    pub fn near(&self, p: DVec3) -> Option<Near> {
+        self.cones.iter().map(|cone| cone.near(p)).min_by(|a, b| a.distance.total_cmp(&b.distance))
+    }
+
+    /// Arc length of the place on the centre line nearest to a point, and the radius there.
+    pub fn project(&self, p: DVec3) -> (f64, f64) {
+        let nearest = self.cones.iter().map(|cone| {
+            let from = p - cone.from;
+            let t = (from.dot(cone.along) * cone.inverse_length2).clamp(0.0, 1.0);
+            let away = (from - t * cone.along).length_squared();
+            let mix = |ends: [f64; 2]| ends[0] + t * (ends[1] - ends[0]);
+            (away, mix(cone.arc), mix(cone.radius))
+        });
+        nearest.min_by(|a, b| a.0.total_cmp(&b.0)).map_or((0.0, 0.0), |(_, arc, radius)| (arc, radius))
+    }
+}
+
+/// Cuts the smooth curve through the stations into cones.
+fn cut(stations: &[Station], direction: DVec3) -> Vec<Cone> {
+    let knots = knots(stations);
+    let samples: Vec<Station> = (0..stations.len().saturating_sub(1))
+        .flat_map(|span| (0..CUTS).map(move |step| (span, step as f64 / CUTS as f64)))
+        .map(|(span, t)| sample(stations, &knots, span, t))
+        .chain(stations.last().copied())
+        .collect();
+    let mut arc = 0.0;
+    let mut cones = Vec::with_capacity(samples.len());
+    for pair in samples.windows(2) {
+        let [a, b] = [pair[0], pair[1]];
+        let along = b.at - a.at;
+        let length = along.length();
+        if length > 1e-9 {
+            cones.push(Cone {
+                from: a.at,
+                along,
+                inverse_length2: 1.0 / (length * length),
+                radius: [a.radius, b.radius],
+                flat: [a.flat, b.flat],
+                arc: [arc, arc + length],
+                direction,
+            });
+            arc += length;
+        }
+    }
+    cones
+}
+
+/// Distances along the polygon of stations.
+fn knots(stations: &[Station]) -> Vec<f64> {
+    let mut knots = vec![0.0];
+    for pair in stations.windows(2) {
+        let last = knots[knots.len() - 1];
+        knots.push(last + pair[0].at.distance(pair[1].at).max(1e-6));
+    }
+    knots
+}
+
+/// The spline between stations `span` and `span + 1`, at `t` from 0 to 1.
+fn sample(stations: &[Station], knots: &[f64], span: usize, t: f64) -> Station {
+    let numbers = |s: &Station| [s.at.x, s.at.y, s.at.z, s.radius, s.flat];
+    let (a, b) = (numbers(&stations[span]), numbers(&stations[span + 1]));
+    let width = knots[span + 1] - knots[span];
+    let slope = |i: usize, k: usize| {
+        let d = |i: usize| (numbers(&stations[i + 1])[k] - numbers(&stations[i])[k]) / (knots[i + 1] - knots[i]);
+        if i == 0 {
+            d(0)
+        } else if i + 1 == stations.len() {
+            d(i - 1)
+        } else {
+            let (before, after) = (knots[i] - knots[i - 1], knots[i + 1] - knots[i]);
+            (d(i - 1) * after + d(i) * before) / (before + after)
+        }
+    };
+    let (t2, t3) = (t * t, t * t * t);
+    let hermite = |k: usize| {
+        (2.0 * t3 - 3.0 * t2 + 1.0) * a[k]
+            + (t3 - 2.0 * t2 + t) * width * slope(span, k)
+            + (3.0 * t2 - 2.0 * t3) * b[k]
+            + (t3 - t2) * width * slope(span + 1, k)
+    };
+    let radius = hermite(3).max(0.5 * a[3].min(b[3]));
+    let flat = hermite(4).clamp(0.1, 4.0);
+    Station { at: DVec3::new(hermite(0), hermite(1), hermite(2)), radius, flat }
+}
