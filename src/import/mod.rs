@@ -3,6 +3,18 @@
 //! [`open`] takes the files as a person gives them (one glTF or GLB with whatever lies beside it, or numbered
 //! OBJ, OFF or PLY files) and returns a checked sequence, or one sentence that says what is wrong.
 
+pub mod gltf;
+mod limits;
+mod natural;
+mod numbered;
+mod obj;
+mod off;
+mod ply;
+mod polygons;
+mod text;
+
+pub use natural::natural_order;
+
 use crate::sequence::Sequence;
 use crate::warning::Warning;
 use serde::{Deserialize, Serialize};
@@ -83,6 +95,9 @@ pub struct Imported {
     pub clips: Vec<Clip>,
     /// The clip that was sampled: an index into `clips`.
     pub clip: Option<usize>,
+    /// The number of faces that the input has, polygons counted as one: for OBJ, OFF and PLY the number of face
+    /// records, for glTF the number of triangles of the sequence.
+    pub input_faces: usize,
     /// What was noticed on the way.
     pub warnings: Vec<Warning>,
 }
@@ -92,11 +107,75 @@ pub struct Imported {
 #[error("{0}")]
 pub struct ImportError(pub String);
 
-/// Reads the given files.
+/// Reads the given files, which may be in any order, as when they are dropped on a page.
 ///
-/// One glTF or GLB (with its buffers beside it), or several OBJ, OFF or PLY files: the first in natural order is
-/// the reference pose, the others are its poses.
+/// One glTF or GLB (with its buffers beside it), or several OBJ, OFF or PLY files: the first in [`natural_order`]
+/// is the reference pose, the others are its poses. Files that are neither are passed over.
 pub fn open(files: &[File], options: &Options) -> Result<Imported, ImportError> {
-    let _ = (files, options);
-    Err(ImportError("no importer is built in".into()))
+    let mut order: Vec<&File> = files.iter().collect();
+    natural::sort(&mut order);
+    open_listed(&order, files, options)
+}
+
+/// Reads the given files in the given order, as on a command line: of OBJ, OFF and PLY files the first is the
+/// reference pose, the others are its poses. Otherwise as [`open`].
+pub fn open_in_order(files: &[File], options: &Options) -> Result<Imported, ImportError> {
+    open_listed(&files.iter().collect::<Vec<_>>(), files, options)
+}
+
+fn open_listed(order: &[&File], files: &[File], options: &Options) -> Result<Imported, ImportError> {
+    let mut documents: Vec<&File> = Vec::new();
+    let mut meshes = Vec::new();
+    for &file in order.iter().filter(|file| !is_hidden(&file.name)) {
+        match kind(file) {
+            Some(Kind::Gltf) => documents.push(file),
+            Some(Kind::Mesh(format)) => meshes.push((file, format)),
+            None => {}
+        }
+    }
+    match (documents.as_slice(), meshes.as_slice()) {
+        ([document], _) => gltf::open(document, files, options),
+        ([first, second, ..], _) => Err(ImportError(format!(
+            "several glTF files were given ({}, {}, …); give one at a time",
+            first.name, second.name
+        ))),
+        ([], []) => Err(ImportError(nothing_to_read(files))),
+        ([], _) => numbered::open(&meshes),
+    }
+}
+
+fn nothing_to_read(files: &[File]) -> String {
+    match files {
+        [] => "no file was given; give one glTF or GLB, or OBJ, OFF or PLY files".into(),
+        [file] => format!("{} is no glTF, GLB, OBJ, OFF or PLY file, which is what can be read", file.name),
+        _ => {
+            format!("none of the {} files is a glTF, GLB, OBJ, OFF or PLY file, which is what can be read", files.len())
+        }
+    }
+}
+
+enum Kind {
+    Gltf,
+    Mesh(numbered::Format),
+}
+
+/// What a file is, by the end of its name or, where that says nothing, by how it begins.
+fn kind(file: &File) -> Option<Kind> {
+    use numbered::Format;
+    let extension = file.name.rsplit_once('.').map(|(_, end)| end.to_ascii_lowercase());
+    match extension.as_deref() {
+        _ if gltf::is_glb(&file.bytes) => Some(Kind::Gltf),
+        Some("gltf" | "glb") => Some(Kind::Gltf),
+        Some("obj") => Some(Kind::Mesh(Format::Obj)),
+        Some("off") => Some(Kind::Mesh(Format::Off)),
+        Some("ply") => Some(Kind::Mesh(Format::Ply)),
+        _ if file.bytes.starts_with(b"ply\n") || file.bytes.starts_with(b"ply\r") => Some(Kind::Mesh(Format::Ply)),
+        _ if file.bytes.starts_with(b"OFF") => Some(Kind::Mesh(Format::Off)),
+        _ => None,
+    }
+}
+
+/// True for what file managers leave in folders.
+fn is_hidden(name: &str) -> bool {
+    name.split(['/', '\\']).any(|part| (part.starts_with('.') && part != "." && part != "..") || part == "__MACOSX")
 }

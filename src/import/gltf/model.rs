@@ -1,0 +1,290 @@
+//! A glTF file that can be posed: what the scene shows, as one list of vertices and faces.
+
+use super::buffers::Buffers;
+use super::clip::Motion;
+use super::container;
+use super::document::Document;
+use super::nodes::{Local, Nodes};
+use super::shape::{self, Shape};
+use super::skin::{self, Skin};
+use crate::import::limits::Budget;
+use crate::import::{Clip, File, ImportError};
+use crate::warning::Warning;
+use glam::{DAffine3, DVec3};
+use std::collections::BTreeMap;
+
+/// A glTF file that can be posed at any time of any clip.
+#[derive(Clone, Debug)]
+pub struct Model {
+    name: String,
+    nodes: Nodes,
+    /// Each node's morph weights where no clip moves them.
+    weights: Vec<Vec<f64>>,
+    skins: Vec<Skin>,
+    shapes: Vec<Shape>,
+    instances: Vec<Instance>,
+    motions: Vec<Motion>,
+    faces: Vec<[u32; 3]>,
+    vertices: usize,
+    pub(super) budget: Budget,
+}
+
+/// One primitive shown at one node.
+#[derive(Clone, Copy, Debug)]
+struct Instance {
+    node: usize,
+    shape: usize,
+    skin: Option<usize>,
+}
+
+impl Model {
+    /// Reads the glTF or GLB `file`; its buffers are looked for among `files`.
+    pub fn read(file: &File, files: &[File], warnings: &mut Vec<Warning>) -> Result<Self, ImportError> {
+        let container = container::split(&file.name, &file.bytes)?;
+        let document = Document::read(&file.name, container.json, warnings)?;
+        let buffers = Buffers::find(&file.name, &document, container.binary, files);
+        let nodes = Nodes::read(&document, warnings)?;
+        let mut reader = Reader { document: &document, buffers: &buffers, budget: Budget::default(), warnings };
+        let skins = (0..document.skins.len()).map(|s| Skin::read(&document, &buffers, s)).collect::<Result<_, _>>();
+        let skins: Vec<Skin> = if shows_skin(&document, &nodes) { skins? } else { Vec::new() };
+        let targets = (0..document.nodes.len()).map(|n| reader.target_count(n)).collect::<Result<Vec<_>, _>>()?;
+        let weights =
+            targets.iter().enumerate().map(|(n, &count)| reader.default_weights(n, count)).collect::<Result<_, _>>()?;
+        let (shapes, instances) = reader.shapes(&nodes, &skins)?;
+        let motions = (0..document.animations.len())
+            .map(|a| Motion::read(&document, &buffers, a, &targets, &mut reader.budget, reader.warnings))
+            .collect::<Result<_, _>>()?;
+        let budget = reader.budget;
+        let mut model = Self {
+            name: file.name.clone(),
+            nodes,
+            weights,
+            skins,
+            shapes,
+            instances,
+            motions,
+            faces: Vec::new(),
+            vertices: 0,
+            budget,
+        };
+        model.join()?;
+        Ok(model)
+    }
+
+    /// The file's name.
+    pub fn name(&self) -> &str {
+        &self.name
+    }
+
+    /// #F triples of vertex numbers, instance after instance in the order in which one walks the node tree.
+    pub fn faces(&self) -> &[[u32; 3]] {
+        &self.faces
+    }
+
+    /// Number of vertices, all instances together.
+    pub fn vertices(&self) -> usize {
+        self.vertices
+    }
+
+    /// The clips.
+    pub fn clips(&self) -> Vec<Clip> {
+        self.motions.iter().map(|m| Clip { name: m.name.clone(), seconds: m.end - m.start }).collect()
+    }
+
+    /// The clips with their keys.
+    pub(super) fn motions(&self) -> &[Motion] {
+        &self.motions
+    }
+
+    /// World positions of all vertices (#V) with every node where the file puts it.
+    pub fn rest(&self) -> Vec<DVec3> {
+        self.place(&self.nodes.locals, &self.weights)
+    }
+
+    /// World positions of all vertices (#V) at `time` (in the file's own seconds) of clip `clip`; the resting ones
+    /// for a clip that does not exist.
+    pub fn pose(&self, clip: usize, time: f64) -> Vec<DVec3> {
+        let (mut locals, mut weights) = (self.nodes.locals.clone(), self.weights.clone());
+        if let Some(motion) = self.motions.get(clip) {
+            motion.apply(time, &mut locals, &mut weights);
+        }
+        self.place(&locals, &weights)
+    }
+
+    /// World positions of all vertices (#V) in the pose in which the skins were bound.
+    pub fn bind(&self) -> Vec<DVec3> {
+        let worlds = self.nodes.worlds(&self.nodes.locals);
+        let bind = skin::bind_pose(&self.skins, &self.nodes, &worlds);
+        let mut out = Vec::with_capacity(self.vertices);
+        for instance in &self.instances {
+            let shape = &self.shapes[instance.shape];
+            let map = match (instance.skin, &shape.influences) {
+                (Some(skin), Some(_)) => bind.skins[skin],
+                _ => bind.worlds[instance.node],
+            };
+            out.extend(shape.morphed(&self.weights[instance.node]).iter().map(|p| map.transform_point3(*p)));
+        }
+        out
+    }
+
+    /// The nodes whose motion can move a vertex: those shown with a mesh or followed as joints, and all above them.
+    pub(super) fn movers(&self) -> Vec<bool> {
+        let mut movers = vec![false; self.nodes.parents.len()];
+        for instance in &self.instances {
+            let followed = instance.skin.filter(|_| self.shapes[instance.shape].influences.is_some());
+            movers[instance.node] = true;
+            followed.iter().flat_map(|&s| &self.skins[s].joints).for_each(|&joint| movers[joint] = true);
+        }
+        for &node in self.nodes.order.iter().rev() {
+            if let Some(parent) = self.nodes.parents[node] {
+                movers[parent] |= movers[node];
+            }
+        }
+        movers
+    }
+
+    fn place(&self, locals: &[Local], weights: &[Vec<f64>]) -> Vec<DVec3> {
+        let worlds = self.nodes.worlds(locals);
+        let skins: Vec<Vec<DAffine3>> = self.skins.iter().map(|skin| skin.matrices(&worlds)).collect();
+        let mut out = Vec::with_capacity(self.vertices);
+        for instance in &self.instances {
+            let shape = &self.shapes[instance.shape];
+            let positions = shape.morphed(&weights[instance.node]);
+            match (instance.skin, &shape.influences) {
+                (Some(skin), Some(influences)) => out.extend(influences.blend(&positions, &skins[skin])),
+                _ => {
+                    let world = worlds[instance.node];
+                    out.extend(positions.iter().map(|p| world.transform_point3(*p)));
+                }
+            }
+        }
+        out
+    }
+
+    /// Numbers the vertices of all instances in one list.
+    fn join(&mut self) -> Result<(), ImportError> {
+        for instance in &self.instances {
+            let shape = &self.shapes[instance.shape];
+            // The budget keeps the number of vertices far below 2³².
+            let first = self.vertices as u32;
+            self.budget.take(shape.positions.len() as u64, 24, &self.name)?;
+            self.budget.take(shape.faces.len() as u64, 12, &self.name)?;
+            self.faces.extend(shape.faces.iter().map(|face| face.map(|v| v + first)));
+            self.vertices += shape.positions.len();
+        }
+        Ok(())
+    }
+}
+
+impl Shape {
+    /// The positions with morph targets applied.
+    fn morphed(&self, weights: &[f64]) -> Vec<DVec3> {
+        let mut positions = self.positions.clone();
+        for (target, &weight) in self.targets.iter().zip(weights).filter(|(_, weight)| **weight != 0.0) {
+            for (vertex, offset) in &target.offsets {
+                positions[*vertex as usize] += weight * offset.as_dvec3();
+            }
+        }
+        positions
+    }
+}
+
+impl shape::Influences {
+    /// Linear blend skinning.
+    fn blend<'s>(&'s self, positions: &'s [DVec3], matrices: &'s [DAffine3]) -> impl Iterator<Item = DVec3> + 's {
+        positions.iter().zip(self.starts.windows(2)).map(|(p, range)| {
+            let entries = &self.entries[range[0] as usize..range[1] as usize];
+            entries.iter().map(|&(j, w)| f64::from(w) * matrices[j as usize].transform_point3(*p)).sum()
+        })
+    }
+}
+
+/// What reading a file's parts needs at hand.
+struct Reader<'a, 'w> {
+    document: &'a Document,
+    buffers: &'a Buffers<'a>,
+    budget: Budget,
+    warnings: &'w mut Vec<Warning>,
+}
+
+impl Reader<'_, '_> {
+    /// The number of morph targets of a node's mesh, 0 without one.
+    fn target_count(&self, node: usize) -> Result<usize, ImportError> {
+        let Some(mesh) = self.document.nodes[node].mesh else { return Ok(0) };
+        let Some(entry) = self.document.meshes.get(mesh.value()) else {
+            return Err(ImportError(format!(
+                "{} of {} shows mesh {}, which does not exist; the file is damaged, export it again",
+                self.document.node_name(node),
+                self.document.name,
+                mesh.value()
+            )));
+        };
+        Ok(entry.primitives.iter().map(|p| p.targets.as_ref().map_or(0, Vec::len)).max().unwrap_or(0))
+    }
+
+    /// Morph weights of a node where no clip moves them: its own, else its mesh's, else 0.
+    fn default_weights(&self, node: usize, count: usize) -> Result<Vec<f64>, ImportError> {
+        let entry = &self.document.nodes[node];
+        let mesh = entry.mesh.and_then(|mesh| self.document.meshes.get(mesh.value()));
+        let given = entry.weights.as_ref().or(mesh.and_then(|m| m.weights.as_ref()));
+        let mut weights: Vec<f64> = given.iter().flat_map(|w| w.iter()).take(count).map(|&w| f64::from(w)).collect();
+        if weights.iter().any(|w| !w.is_finite()) {
+            return Err(ImportError(format!(
+                "{} of {} has a morph weight that is not a finite number; export the file again",
+                self.document.node_name(node),
+                self.document.name
+            )));
+        }
+        weights.resize(count, 0.0);
+        Ok(weights)
+    }
+
+    /// Reads every primitive that the scene shows, once for each way in which it is shown.
+    fn shapes(&mut self, nodes: &Nodes, skins: &[Skin]) -> Result<(Vec<Shape>, Vec<Instance>), ImportError> {
+        let mut shapes = Vec::new();
+        let mut instances = Vec::new();
+        // Primitives read already, by mesh, number and joints of the skin (which bound the joints' numbers).
+        let mut known: BTreeMap<(usize, usize, Option<usize>), Option<usize>> = BTreeMap::new();
+        for &node in &nodes.shown {
+            let entry = &self.document.nodes[node];
+            let Some(mesh) = entry.mesh.map(|m| m.value()) else { continue };
+            let skin = entry.skin.map(|s| s.value());
+            let joints = match skin.map(|s| skins.get(s)) {
+                Some(Some(skin)) => Some(skin.joints.len()),
+                Some(None) => return Skin::read(self.document, self.buffers, usize::MAX).map(|_| Default::default()),
+                None => None,
+            };
+            let primitives = self.document.meshes.get(mesh).map_or(0, |m| m.primitives.len());
+            for number in 0..primitives {
+                let key = (mesh, number, joints);
+                if !known.contains_key(&key) {
+                    let shape = shape::read(
+                        self.document,
+                        self.buffers,
+                        mesh,
+                        number,
+                        joints,
+                        &mut self.budget,
+                        self.warnings,
+                    )?;
+                    known.insert(
+                        key,
+                        shape.map(|shape| {
+                            shapes.push(shape);
+                            shapes.len() - 1
+                        }),
+                    );
+                }
+                if let Some(Some(shape)) = known.get(&key) {
+                    instances.push(Instance { node, shape: *shape, skin });
+                }
+            }
+        }
+        Ok((shapes, instances))
+    }
+}
+
+/// True if a node that the scene shows has a skin: a broken skin that nothing uses does no harm.
+fn shows_skin(document: &Document, nodes: &Nodes) -> bool {
+    nodes.shown.iter().any(|&n| document.nodes[n].skin.is_some() && document.nodes[n].mesh.is_some())
+}

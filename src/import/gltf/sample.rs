@@ -1,0 +1,183 @@
+//! From a posable model to a sequence: choosing the clip, sampling it, welding seams.
+
+use super::clip::Motion;
+use super::model::Model;
+use crate::import::{File, ImportError, Imported, Options, Reference, Sampling};
+use crate::mesh::weld::{compact, weld};
+use crate::sequence::{Pose, Sequence};
+use crate::warning::Warning;
+use glam::DVec3;
+
+/// Vertices that differ by less than this share of the diagonal are welded: well above the rounding of 32-bit
+/// floats, well below anything modelled.
+const WELD_TOLERANCE: f64 = 1e-6;
+/// A clip moves the mesh if a vertex moves by more than this share of the diagonal.
+const MOVES: f64 = 1e-6;
+/// Times at which a clip is looked at to see whether it moves the mesh.
+const PROBES: usize = 9;
+
+/// Reads a glTF or GLB as a sequence. Its buffers are looked for among `files`.
+pub fn open(file: &File, files: &[File], options: &Options) -> Result<Imported, ImportError> {
+    let mut warnings = Vec::new();
+    let model = Model::read(file, files, &mut warnings)?;
+    if model.faces().is_empty() {
+        return Err(ImportError(format!(
+            "{} shows no triangle mesh; Sinew needs one, with an animation if it is to move",
+            model.name()
+        )));
+    }
+    let clip = choose_clip(&model, options, &mut warnings)?;
+    let times = match clip.and_then(|clip| model.motions().get(clip)) {
+        Some(motion) => sample_times(motion, &model.movers(), options.sampling)?,
+        None => Vec::new(),
+    };
+    // The poses, the reference, and the copies that welding makes.
+    model.budget.poses(model.name(), model.vertices() as u64, times.len() as u64 + 2)?;
+    let start = clip.and_then(|clip| model.motions().get(clip)).map_or(0.0, |m| m.start);
+    let mut poses: Vec<Pose> = times
+        .iter()
+        .map(|&time| Pose {
+            name: format!("{:.3} s", time - start),
+            time: time - start,
+            positions: clip.map_or_else(Vec::new, |clip| model.pose(clip, time)),
+        })
+        .collect();
+    let mut reference = match options.reference {
+        Reference::Bind => model.bind(),
+        Reference::Nodes => model.rest(),
+        Reference::FirstFrame => poses.first().map_or_else(|| model.rest(), |pose| pose.positions.clone()),
+    };
+    let mut faces = model.faces().to_vec();
+    let clips = model.clips();
+    let name = model.name().to_owned();
+    drop(model);
+    if options.weld {
+        weld_seams(&mut faces, &mut reference, &mut poses, &mut warnings);
+    }
+    drop_collapsed(&mut faces, &mut warnings);
+    let sequence = Sequence::new(short_name(&name), faces, reference, poses)
+        .map_err(|error| ImportError(format!("{name}: {error}; the file is damaged, export it again")))?;
+    let input_faces = sequence.faces().len();
+    Ok(Imported { sequence, clips, clip, input_faces, warnings })
+}
+
+/// The last part of a path.
+fn short_name(path: &str) -> &str {
+    path.rsplit(['/', '\\']).next().unwrap_or(path)
+}
+
+fn choose_clip(model: &Model, options: &Options, warnings: &mut Vec<Warning>) -> Result<Option<usize>, ImportError> {
+    let motions = model.motions();
+    if let Some(wanted) = &options.clip {
+        let by_name = motions.iter().position(|m| &m.name == wanted);
+        let by_number = || wanted.parse().ok().filter(|&number: &usize| number < motions.len());
+        let Some(clip) = by_name.or_else(by_number) else {
+            let names: Vec<String> = motions.iter().take(20).map(|m| format!("\"{}\"", m.name)).collect();
+            let there_are =
+                if names.is_empty() { "it has none".into() } else { format!("it has {}", names.join(", ")) };
+            return Err(ImportError(format!("{} has no clip \"{wanted}\"; {there_are}", model.name())));
+        };
+        if !moves(model, clip) {
+            warnings.push(Warning::new(
+                "clip-moves-nothing",
+                format!("Clip \"{}\" moves no vertex of the mesh.", motions[clip].name),
+            ));
+        }
+        return Ok(Some(clip));
+    }
+    let found = (0..motions.len()).find(|&clip| moves(model, clip));
+    if found.is_none() {
+        let what = match motions.len() {
+            0 => "The file has no animation, so the mesh stands still; an animation is what is missing to find parts.",
+            _ => "No clip of the file moves the mesh, so it stands still; a clip that moves it is what is missing.",
+        };
+        warnings.push(Warning::new("no-animation", what));
+    }
+    Ok(found)
+}
+
+/// True if a clip moves some vertex.
+fn moves(model: &Model, clip: usize) -> bool {
+    let Some(motion) = model.motions().get(clip) else { return false };
+    let movers = model.movers();
+    if !motion.channels.iter().any(|c| movers[c.node]) {
+        return false;
+    }
+    let rest = model.rest();
+    let tolerance = MOVES * extent(&rest);
+    let first = model.pose(clip, motion.start);
+    let differs = |a: &[DVec3], b: &[DVec3]| a.iter().zip(b).any(|(p, q)| p.distance(*q) > tolerance);
+    // A clip of one key is a pose: it moves the mesh if it differs from the resting one.
+    if motion.end <= motion.start {
+        return differs(&rest, &first);
+    }
+    let step = (motion.end - motion.start) / PROBES as f64;
+    (1..=PROBES).any(|k| differs(&first, &model.pose(clip, motion.start + step * k as f64)))
+}
+
+/// Times of the poses, in the file's seconds: ascending, first and last moment included.
+fn sample_times(motion: &Motion, movers: &[bool], sampling: Sampling) -> Result<Vec<f64>, ImportError> {
+    let seconds = motion.end - motion.start;
+    match sampling {
+        Sampling::Rate(rate) => {
+            if !(rate.is_finite() && rate > 0.0) {
+                return Err(ImportError(format!("poses a second must be a number above 0, not {rate}")));
+            }
+            // Beyond this no file fits into memory; the estimate that follows says so in words.
+            let gaps = (seconds * rate).round().clamp(if seconds > 0.0 { 1.0 } else { 0.0 }, 1e9) as usize;
+            if gaps >= 10_000_000 {
+                return Err(ImportError(format!(
+                    "{rate} poses a second for {seconds:.1} s are more than ten million poses; take fewer poses a second"
+                )));
+            }
+            Ok((0..=gaps).map(|k| motion.start + seconds * (k as f64 / gaps.max(1) as f64)).collect())
+        }
+        Sampling::Keys => {
+            let channels = motion.channels.iter().filter(|c| movers[c.node]);
+            let mut times: Vec<f64> = channels.flat_map(|c| c.times.iter().copied()).collect();
+            times.sort_by(f64::total_cmp);
+            // The same moment, written by different channels with different rounding.
+            times.dedup_by(|a, b| (*a - *b).abs() <= 1e-6 * seconds.max(1e-3));
+            Ok(times)
+        }
+    }
+}
+
+fn weld_seams(faces: &mut [[u32; 3]], reference: &mut Vec<DVec3>, poses: &mut [Pose], warnings: &mut Vec<Warning>) {
+    let stands = {
+        let mut all: Vec<&[DVec3]> = vec![reference];
+        all.extend(poses.iter().map(|pose| pose.positions.as_slice()));
+        weld(&all, WELD_TOLERANCE * extent(reference))
+    };
+    let (kept, numbers) = compact(&stands);
+    let gone = reference.len() - kept.len();
+    if gone == 0 {
+        return;
+    }
+    let keep = |positions: &[DVec3]| -> Vec<DVec3> { kept.iter().map(|&v| positions[v as usize]).collect() };
+    *reference = keep(reference);
+    poses.iter_mut().for_each(|pose| pose.positions = keep(&pose.positions));
+    faces.iter_mut().flatten().for_each(|v| *v = numbers[*v as usize]);
+    warnings.push(Warning::new(
+        "welded",
+        format!(
+            "{gone} vertices that agree with another in every pose (seams of texture and normals) were joined to it."
+        ),
+    ));
+}
+
+fn drop_collapsed(faces: &mut Vec<[u32; 3]>, warnings: &mut Vec<Warning>) {
+    let before = faces.len();
+    faces.retain(|[a, b, c]| a != b && b != c && c != a);
+    let gone = before - faces.len();
+    if gone > 0 {
+        warnings.push(Warning::new("collapsed-faces", format!("{gone} faces that name a vertex twice were left out.")));
+    }
+}
+
+/// The diagonal of the bounding box.
+fn extent(positions: &[DVec3]) -> f64 {
+    let low = positions.iter().copied().fold(DVec3::INFINITY, DVec3::min);
+    let high = positions.iter().copied().fold(DVec3::NEG_INFINITY, DVec3::max);
+    if low.x > high.x { 0.0 } else { low.distance(high) }
+}

@@ -1,0 +1,295 @@
+//! The geometry of one primitive: positions, triangles, morph targets and the joints that its vertices follow.
+//!
+//! Only the vertices that triangles use are read; many primitives may share one large array of vertices.
+
+use super::accessor::Accessor;
+use super::buffers::Buffers;
+use super::document::Document;
+use crate::import::ImportError;
+use crate::import::limits::Budget;
+use crate::warning::Warning;
+use glam::{DVec3, Vec3};
+use gltf::json::accessor::Type;
+use gltf::json::mesh::{Mode, Primitive, Semantic};
+use gltf::json::validation::Checked;
+
+/// The geometry of a primitive, in the frame of its mesh.
+#[derive(Clone, Debug, Default)]
+pub struct Shape {
+    /// #V positions.
+    pub positions: Vec<DVec3>,
+    /// #F triples of vertex numbers.
+    pub faces: Vec<[u32; 3]>,
+    /// The morph targets, in order.
+    pub targets: Vec<Target>,
+    /// Which joints the vertices follow; `None` without a skin.
+    pub influences: Option<Influences>,
+}
+
+/// A morph target: the vertices that it moves, and how far at weight 1.
+#[derive(Clone, Debug, Default)]
+pub struct Target {
+    /// The vertices that it moves and by how much.
+    pub offsets: Vec<(u32, Vec3)>,
+}
+
+/// Joints and weights, any number a vertex.
+#[derive(Clone, Debug, Default)]
+pub struct Influences {
+    /// #V + 1 starts of the vertices' entries.
+    pub starts: Vec<u32>,
+    /// Entries: a joint (a number in the skin's list) and its weight; the weights of a vertex add up to 1.
+    pub entries: Vec<(u32, f32)>,
+}
+
+/// Reads primitive `number` of mesh `mesh`; `None` for points and lines.
+///
+/// `joints` is the number of joints of the skin that it is bound to, if any.
+pub fn read(
+    document: &Document,
+    buffers: &Buffers,
+    mesh: usize,
+    number: usize,
+    joints: Option<usize>,
+    budget: &mut Budget,
+    warnings: &mut Vec<Warning>,
+) -> Result<Option<Shape>, ImportError> {
+    let whose = document.mesh_name(mesh);
+    let Some(primitive) = document.meshes.get(mesh).and_then(|m| m.primitives.get(number)) else { return Ok(None) };
+    let left_out = |warnings: &mut Vec<Warning>, what: &str| {
+        warnings.push(Warning::new(
+            "primitive-left-out",
+            format!("Primitive {number} of {whose} {what}; it was left out."),
+        ));
+        Ok(None)
+    };
+    let Checked::Valid(mode) = primitive.mode else { return left_out(warnings, "is of an unknown kind") };
+    if matches!(mode, Mode::Points | Mode::Lines | Mode::LineLoop | Mode::LineStrip) {
+        return left_out(warnings, "is made of points or lines");
+    }
+    let Some(positions) = attribute(document, buffers, primitive, Semantic::Positions, &whose)? else {
+        return left_out(warnings, "has no positions");
+    };
+    positions.expect_shape(Type::Vec3)?;
+    let corners = corners(document, buffers, primitive, &whose, positions.len(), budget)?;
+    let (used, faces) = compact(triangles(mode, &corners), positions.len());
+    if faces.is_empty() {
+        return left_out(warnings, "has no triangle");
+    }
+    budget.take(used.len() as u64, 24, &whose)?;
+    let read_position = |&v: &u32| positions.numbers(v as usize).map(DVec3::from_array);
+    let shape = Shape {
+        positions: used.iter().map(read_position).collect::<Result<_, _>>()?,
+        faces,
+        targets: targets(document, buffers, primitive, &whose, &positions, &used, budget)?,
+        influences: match joints {
+            Some(joints) => influences(document, buffers, primitive, &whose, joints, &positions, &used, budget)?,
+            None => None,
+        },
+    };
+    Ok(Some(shape))
+}
+
+fn attribute<'a>(
+    document: &Document,
+    buffers: &'a Buffers,
+    primitive: &Primitive,
+    semantic: Semantic,
+    whose: &str,
+) -> Result<Option<Accessor<'a>>, ImportError> {
+    let purpose = format!("{} of {whose}", semantic.to_string());
+    match primitive.attributes.get(&Checked::Valid(semantic)) {
+        Some(index) => Accessor::open(document, buffers, index.value(), &purpose).map(Some),
+        None => Ok(None),
+    }
+}
+
+/// The vertex numbers of the primitive in the order in which it names them.
+fn corners(
+    document: &Document,
+    buffers: &Buffers,
+    primitive: &Primitive,
+    whose: &str,
+    vertices: usize,
+    budget: &mut Budget,
+) -> Result<Vec<u32>, ImportError> {
+    let Some(index) = primitive.indices else {
+        budget.take(vertices as u64, 4, whose)?;
+        return Ok((0..vertices as u32).collect());
+    };
+    let indices = Accessor::open(document, buffers, index.value(), &format!("indices of {whose}"))?;
+    indices.expect_shape(Type::Scalar)?;
+    budget.take(indices.len() as u64, 4, whose)?;
+    let mut corners = Vec::with_capacity(indices.len());
+    for element in 0..indices.len() {
+        let [vertex] = indices.integers(element)?;
+        if vertex as usize >= vertices {
+            return Err(indices.wrong(&format!("names vertex {vertex}, but there are only {vertices} vertices")));
+        }
+        corners.push(vertex);
+    }
+    Ok(corners)
+}
+
+fn triangles(mode: Mode, corners: &[u32]) -> Vec<[u32; 3]> {
+    match mode {
+        // Every other triangle of a strip turns the other way round.
+        Mode::TriangleStrip => corners
+            .windows(3)
+            .enumerate()
+            .map(|(k, w)| if k % 2 == 0 { [w[0], w[1], w[2]] } else { [w[1], w[0], w[2]] })
+            .filter(|[a, b, c]| a != b && b != c && c != a)
+            .collect(),
+        Mode::TriangleFan => {
+            corners.first().map(|&hub| corners[1..].windows(2).map(|w| [hub, w[0], w[1]]).collect()).unwrap_or_default()
+        }
+        _ => corners.chunks_exact(3).map(|c| [c[0], c[1], c[2]]).collect(),
+    }
+}
+
+/// The vertices that faces use, ascending, and the faces in numbers of that list.
+fn compact(mut faces: Vec<[u32; 3]>, vertices: usize) -> (Vec<u32>, Vec<[u32; 3]>) {
+    // An array over all vertices where most are used, a sorted list where few are.
+    let mut used: Vec<u32> = if faces.len() * 8 > vertices {
+        let mut named = vec![false; vertices];
+        faces.iter().flatten().for_each(|&v| named[v as usize] = true);
+        (0..vertices as u32).filter(|&v| named[v as usize]).collect()
+    } else {
+        let mut used: Vec<u32> = faces.iter().flatten().copied().collect();
+        used.sort_unstable();
+        used.dedup();
+        used
+    };
+    used.shrink_to_fit();
+    if used.len() < vertices {
+        for v in faces.iter_mut().flatten() {
+            // Every vertex that a face names is in the list.
+            *v = used.binary_search(v).unwrap_or(0) as u32;
+        }
+    }
+    (used, faces)
+}
+
+fn targets(
+    document: &Document,
+    buffers: &Buffers,
+    primitive: &Primitive,
+    whose: &str,
+    positions: &Accessor,
+    used: &[u32],
+    budget: &mut Budget,
+) -> Result<Vec<Target>, ImportError> {
+    let mut targets = Vec::new();
+    for (number, entry) in primitive.targets.iter().flatten().enumerate() {
+        let mut target = Target::default();
+        if let Some(index) = entry.positions {
+            let purpose = format!("morph target {number} of {whose}");
+            let offsets = Accessor::open(document, buffers, index.value(), &purpose)?;
+            offsets.expect_shape(Type::Vec3)?;
+            offsets.expect_len(positions.len(), positions.label())?;
+            if !offsets.is_zero() {
+                for (new, &old) in used.iter().enumerate() {
+                    let offset = DVec3::from_array(offsets.numbers(old as usize)?);
+                    if offset != DVec3::ZERO {
+                        target.offsets.push((new as u32, offset.as_vec3()));
+                    }
+                }
+                target.offsets.shrink_to_fit();
+                budget.take(target.offsets.len() as u64, 16, whose)?;
+            }
+        }
+        targets.push(target);
+    }
+    Ok(targets)
+}
+
+fn influences(
+    document: &Document,
+    buffers: &Buffers,
+    primitive: &Primitive,
+    whose: &str,
+    joint_count: usize,
+    positions: &Accessor,
+    used: &[u32],
+    budget: &mut Budget,
+) -> Result<Option<Influences>, ImportError> {
+    let mut sets = Vec::new();
+    for set in 0.. {
+        let joints = attribute(document, buffers, primitive, Semantic::Joints(set), whose)?;
+        let weights = attribute(document, buffers, primitive, Semantic::Weights(set), whose)?;
+        let (Some(joints), Some(weights)) = (joints, weights) else { break };
+        for accessor in [&joints, &weights] {
+            accessor.expect_shape(Type::Vec4)?;
+            accessor.expect_len(positions.len(), positions.label())?;
+        }
+        sets.push((joints, weights));
+    }
+    if sets.is_empty() {
+        return Ok(None);
+    }
+    budget.take((sets.len() * used.len()) as u64, 32, whose)?;
+    let mut influences = Influences { starts: vec![0], entries: Vec::with_capacity(4 * used.len()) };
+    for &vertex in used {
+        let start = influences.entries.len();
+        let mut first = 0;
+        for (number, (joints, weights)) in sets.iter().enumerate() {
+            let named: [u32; 4] = joints.integers(vertex as usize)?;
+            let shares: [f64; 4] = weights.numbers(vertex as usize)?;
+            if number == 0 {
+                first = named[0];
+            }
+            for (joint, share) in named.into_iter().zip(shares).filter(|(_, share)| *share > 0.0) {
+                if joint as usize >= joint_count {
+                    return Err(joints.wrong(&format!(
+                        "names joint {joint} at vertex {vertex}, but the skin has only {joint_count} joints"
+                    )));
+                }
+                influences.entries.push((joint, share as f32));
+            }
+        }
+        normalise(&mut influences.entries, start, first.min(joint_count.saturating_sub(1) as u32));
+        influences.starts.push(influences.entries.len() as u32);
+    }
+    Ok(Some(influences))
+}
+
+/// Makes the weights from `start` on add up to 1; a vertex without weights follows `first` alone.
+fn normalise(entries: &mut Vec<(u32, f32)>, start: usize, first: u32) {
+    let sum: f64 = entries[start..].iter().map(|(_, w)| f64::from(*w)).sum();
+    if sum > 0.0 && sum.is_finite() {
+        entries[start..].iter_mut().for_each(|(_, w)| *w = (f64::from(*w) / sum) as f32);
+    } else {
+        entries.truncate(start);
+        entries.push((first, 1.0));
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn strips_and_fans() {
+        assert_eq!(triangles(Mode::TriangleStrip, &[0, 1, 2, 3]), [[0, 1, 2], [2, 1, 3]]);
+        assert_eq!(triangles(Mode::TriangleStrip, &[0, 1, 2, 2, 4]), [[0, 1, 2]]);
+        assert_eq!(triangles(Mode::TriangleFan, &[5, 1, 2, 3]), [[5, 1, 2], [5, 2, 3]]);
+        assert!(triangles(Mode::TriangleFan, &[]).is_empty());
+        assert!(triangles(Mode::TriangleStrip, &[1]).is_empty());
+        assert_eq!(triangles(Mode::Triangles, &[0, 1, 2, 3]), [[0, 1, 2]]);
+    }
+
+    #[test]
+    fn keeps_only_used_vertices() {
+        assert_eq!(compact(vec![[7, 3, 5]], 1000), (vec![3, 5, 7], vec![[2, 0, 1]]));
+        assert_eq!(compact(vec![[3, 1, 2]], 5), (vec![1, 2, 3], vec![[2, 0, 1]]));
+    }
+
+    #[test]
+    fn weights_add_up_to_one() {
+        let mut entries = vec![(9, 9.0), (0, 1.0), (1, 3.0)];
+        normalise(&mut entries, 1, 0);
+        assert_eq!(entries, [(9, 9.0), (0, 0.25), (1, 0.75)]);
+        normalise(&mut entries, 3, 4);
+        assert_eq!(entries[3], (4, 1.0));
+    }
+}

@@ -1,0 +1,54 @@
+//! How much memory an import may take, estimated before it is taken.
+
+use super::ImportError;
+
+/// Bytes that an import may fill. A wasm32 module has 4 GiB at the most, and the algorithms need their share.
+pub const LIMIT: u64 = if cfg!(target_arch = "wasm32") { 1 << 30 } else { 2 << 30 };
+
+/// What is left of the limit.
+#[derive(Clone, Debug)]
+pub struct Budget {
+    left: u64,
+    limit: u64,
+}
+
+impl Default for Budget {
+    fn default() -> Self {
+        Self { left: LIMIT, limit: LIMIT }
+    }
+}
+
+impl Budget {
+    /// Takes `count` items of `bytes` bytes for `what`, or says that there is not room.
+    pub fn take(&mut self, count: u64, bytes: u64, what: &str) -> Result<(), ImportError> {
+        match self.left.checked_sub(count.saturating_mul(bytes)) {
+            Some(left) => {
+                self.left = left;
+                Ok(())
+            }
+            None => Err(ImportError(format!(
+                "{what} has {count} entries, which do not fit into the {} allowed here; use a simpler mesh",
+                size(self.limit)
+            ))),
+        }
+    }
+
+    /// Checks that so many poses (the reference included) of so many vertices fit in; 24 bytes a vertex.
+    pub fn poses(&self, name: &str, vertices: u64, poses: u64) -> Result<(), ImportError> {
+        let needed = vertices.saturating_mul(poses).saturating_mul(24);
+        if needed <= self.left {
+            return Ok(());
+        }
+        Err(ImportError(format!(
+            "{name}: {poses} poses of {vertices} vertices need {}, more than the {} allowed here; take fewer poses a \
+             second, or a simpler mesh",
+            size(needed),
+            size(self.left)
+        )))
+    }
+}
+
+fn size(bytes: u64) -> String {
+    let bytes = bytes as f64;
+    if bytes >= 1e8 { format!("{:.1} GB", bytes / 1e9) } else { format!("{:.0} MB", bytes / 1e6) }
+}

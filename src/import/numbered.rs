@@ -1,0 +1,136 @@
+//! OBJ, OFF and PLY files with the same faces, as the poses of one sequence.
+
+use super::limits::Budget;
+use super::polygons::PolygonMesh;
+use super::{File, ImportError, Imported, obj, off, ply};
+use crate::sequence::{Pose, Sequence};
+use crate::warning::Warning;
+
+/// Seconds from pose to pose: files have no times of their own.
+const STEP: f64 = 1.0 / 12.0;
+
+/// A format of still polygon meshes.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Format {
+    /// Wavefront OBJ.
+    Obj,
+    /// Geomview OFF.
+    Off,
+    /// Stanford PLY.
+    Ply,
+}
+
+/// Reads files as poses: the first is the reference, the others its poses in the given order.
+pub fn open(files: &[(&File, Format)]) -> Result<Imported, ImportError> {
+    let Some((first, poses)) = files.split_first() else {
+        return Err(ImportError("no OBJ, OFF or PLY file was given".into()));
+    };
+    let name = &first.0.name;
+    let mut warnings = Vec::new();
+    let reference = read(first)?;
+    let (faces, polygons) = reference.triangulate();
+    if faces.is_empty() {
+        return Err(ImportError(format!("{name} has no faces; Sinew needs a surface, not only points")));
+    }
+    Budget::default().poses(name, reference.positions.len() as u64, files.len() as u64)?;
+    note_polygons(&reference, &polygons, &mut warnings);
+    let mut others = Vec::with_capacity(poses.len());
+    let mut different = Vec::new();
+    for (k, file) in poses.iter().enumerate() {
+        let mesh = read(file)?;
+        check_pose(name, &reference, &file.0.name, &mesh)?;
+        if mesh.len() > 0 && !mesh.same_polygons(&reference) {
+            different.push(file.0.name.clone());
+        }
+        others.push(Pose { name: file.0.name.clone(), time: k as f64 * STEP, positions: mesh.positions });
+    }
+    if let Some(example) = different.first() {
+        warnings.push(Warning::new(
+            "different-faces",
+            format!(
+                "The faces of {} (such as {example}) name other vertices than those of {name}; the faces of {name} \
+                 were taken, which is right only if the vertices are the same ones in the same order.",
+                counted(different.len(), "file")
+            ),
+        ));
+    }
+    if others.is_empty() {
+        warnings.push(Warning::new(
+            "no-animation",
+            "There is one file only, so the mesh stands still; give its other poses together with it to find parts.",
+        ));
+    }
+    let input_faces = reference.len();
+    let cut = faces.len() != input_faces || polygons.iter().enumerate().any(|(f, &p)| f != p as usize);
+    let wrong = |error: crate::sequence::SequenceError| ImportError(format!("{name}: {error}"));
+    let mut sequence =
+        Sequence::new(title(name, !others.is_empty()), faces, reference.positions, others).map_err(wrong)?;
+    if cut {
+        sequence = sequence.with_polygons(polygons).map_err(wrong)?;
+    }
+    Ok(Imported { sequence, clips: Vec::new(), clip: None, input_faces, warnings })
+}
+
+fn read((file, format): &(&File, Format)) -> Result<PolygonMesh, ImportError> {
+    let mesh = match format {
+        Format::Obj => obj::read(&file.name, &file.bytes),
+        Format::Off => off::read(&file.name, &file.bytes),
+        Format::Ply => ply::read(&file.name, &file.bytes),
+    }?;
+    mesh.check(&file.name)?;
+    Ok(mesh)
+}
+
+fn check_pose(name: &str, reference: &PolygonMesh, pose_name: &str, pose: &PolygonMesh) -> Result<(), ImportError> {
+    let (vertices, expected) = (pose.positions.len(), reference.positions.len());
+    if vertices != expected {
+        return Err(ImportError(format!(
+            "{pose_name} has {vertices} vertices, but {name} has {expected}; all poses must be of one mesh"
+        )));
+    }
+    // A pose may leave its faces away.
+    if pose.len() != 0 && pose.len() != reference.len() {
+        return Err(ImportError(format!(
+            "{pose_name} has {} faces, but {name} has {}; all poses must be of one mesh",
+            pose.len(),
+            reference.len()
+        )));
+    }
+    Ok(())
+}
+
+fn note_polygons(mesh: &PolygonMesh, polygons: &[u32], warnings: &mut Vec<Warning>) {
+    let thin = (0..mesh.len()).filter(|&p| mesh.polygon(p).len() < 3).count();
+    if thin > 0 {
+        let what = format!("{} of fewer than three corners were left out.", counted(thin, "face"));
+        warnings.push(Warning::new("thin-faces", what));
+    }
+    let repeats = |polygon: &[u32]| {
+        let mut sorted = polygon.to_vec();
+        sorted.sort_unstable();
+        sorted.windows(2).any(|w| w[0] == w[1])
+    };
+    let of_polygon = |&f: &usize| repeats(mesh.polygon(polygons[f] as usize));
+    let faces: Vec<u32> = (0..polygons.len()).filter(of_polygon).map(|f| f as u32).collect();
+    if !faces.is_empty() {
+        let what = format!(
+            "{} that name a vertex twice were kept, so that faces keep their numbers.",
+            counted(faces.len(), "face")
+        );
+        warnings.push(Warning::on_faces("collapsed-faces", what, faces));
+    }
+}
+
+fn counted(count: usize, what: &str) -> String {
+    format!("{count} {what}{}", if count == 1 { "" } else { "s" })
+}
+
+/// What to call the sequence: its file, or the folder of its files.
+fn title(path: &str, many: bool) -> &str {
+    let mut parts = path.rsplit(['/', '\\']);
+    let file = parts.next().unwrap_or(path);
+    match parts.next() {
+        Some(folder) if many && !folder.is_empty() => folder,
+        _ => file,
+    }
+}
