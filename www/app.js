@@ -33,6 +33,8 @@ export class App extends EventTarget {
     /** The number of parts that was asked for; null: the engine's own choice. */
     this.wanted = null;
     this.result = null;
+    /** sRGB triples of the parts. */
+    this.colours = new Uint8Array();
     this.busy = null;
     this.notice = null;
     this.panel = true;
@@ -122,8 +124,8 @@ export class App extends EventTarget {
     if (wanted != null && parameters.method === 'tree') await this.#fetchParts(wanted);
     this.feature = Math.min(this.feature, Math.max(0, result.features.length - 1));
     this.round = Math.max(0, result.rounds.length - 1);
+    this.#paintParts();
     this.changed('result', 'link');
-    this.paint();
   }
 
   /** Another number of parts; null: the engine's own choice. Of many calls in a row the last one counts. */
@@ -139,8 +141,8 @@ export class App extends EventTarget {
       const next = queue.next;
       queue.next = undefined;
       await this.#fetchParts(next);
+      this.#paintParts();
       this.changed('result');
-      this.paint();
     }
     queue.running = false;
   }
@@ -207,6 +209,13 @@ export class App extends EventTarget {
     }
     const view = this.step === 'parts' ? VIEWS.find(({ id }) => id === this.view) : null;
     (view ?? VIEWS.at(-1)).paint(this);
+  }
+
+  /** Paints new parts, remembers what colour each has, and goes back to the view in force. */
+  #paintParts() {
+    VIEWS.at(-1).paint(this);
+    this.colours = this.stage.partColours;
+    this.paint();
   }
 
   // Work and words.

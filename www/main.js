@@ -40,6 +40,7 @@ stage.addEventListener('no-gpu', () => {
   element('no-gpu').hidden = false;
   if (stage.canvas) stage.canvas.hidden = true;
 });
+stage.addEventListener('trouble', ({ error }) => app.say(error.message));
 stage.started.catch((error) => {
   element('no-gpu').hidden = false;
   console.error(error);

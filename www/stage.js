@@ -28,7 +28,6 @@ export class Stage extends EventTarget {
     this.view = null;
     this.backend = null;
     this.rebuilds = 0;
-    this.dirty = true;
     this.kept = { mesh: null, time: -1, loop: false, paint: null, boundaries: true, wireframe: false, marks: new Map(),
       camera: null, dark: false, insets: [0, 0, 0, 0] };
     this.started = this.#start(module);
@@ -66,15 +65,14 @@ export class Stage extends EventTarget {
 
   #restore() {
     const kept = this.kept;
-    const camera = kept.camera;
-    this.#resize();
+    this.#fit();
     this.view.set_theme(kept.dark);
     this.view.set_insets(...kept.insets);
     this.view.set_loop(kept.loop);
     if (kept.mesh) {
       this.view.set_mesh(kept.mesh.faces, kept.mesh.reference);
       this.view.set_poses(kept.mesh.poses);
-      if (camera) this.view.set_camera(camera);
+      if (kept.camera) this.view.set_camera(kept.camera);
       else this.view.frame();
     }
     this.view.set_time(kept.time);
@@ -82,23 +80,23 @@ export class Stage extends EventTarget {
     this.view.set_wireframe(kept.wireframe);
     if (kept.paint) this.view[kept.paint.method](...kept.paint.values);
     for (const [style, faces] of kept.marks) this.view.mark_faces(faces, style);
-    this.dirty = true;
+  }
+
+  #fit() {
+    const { width, height } = this.host.getBoundingClientRect();
+    if (width >= 1 && height >= 1) this.view?.resize(width, height, devicePixelRatio);
   }
 
   #resize() {
-    const { width, height } = this.host.getBoundingClientRect();
-    if (!this.view || width < 1 || height < 1) return;
-    this.view.resize(width, height, devicePixelRatio);
-    this.dirty = true;
+    this.#fit();
+    this.#frameUnlessMoved();
   }
 
   #frame(now) {
     requestAnimationFrame((later) => this.#frame(later));
     this.dispatchEvent(Object.assign(new Event('tick'), { now }));
-    if (!this.dirty || !this.view) return;
-    this.dirty = this.view.render();
-    if (this.kept.mesh) this.dispatchEvent(new Event('drawn'));
-    this.#watch();
+    // Without a change nothing is drawn, and nothing is spent.
+    if (this.view?.render() && this.kept.mesh) this.dispatchEvent(new Event('drawn'));
   }
 
   #watch() {
@@ -112,10 +110,20 @@ export class Stage extends EventTarget {
     setTimeout(() => this.#build(), REBUILD_AFTER);
   }
 
+  /** Writes changes down and hands them on; a Viewport that cannot follow says why in a sentence. */
   #set(changes, act) {
     Object.assign(this.kept, changes);
-    this.dirty = true;
-    if (this.view) return act(this.view);
+    if (!this.view) return;
+    try {
+      act(this.view);
+    } catch (error) {
+      this.dispatchEvent(Object.assign(new Event('trouble'), { error }));
+    }
+  }
+
+  /** Until the visitor moves the camera, it keeps the whole motion in the free part of the picture. */
+  #frameUnlessMoved() {
+    if (this.view && this.kept.mesh && !this.kept.camera) this.view.frame();
   }
 
   /** What assistive technology says of the picture. */
@@ -178,14 +186,14 @@ export class Stage extends EventTarget {
 
   set insets(insets) {
     this.#set({ insets }, (view) => view.set_insets(...insets));
+    this.#frameUnlessMoved();
   }
 
   /** Moves the camera: `orbit`, `pan`, `zoom` or `frame` of the Viewport. */
   move(method, ...values) {
     if (!this.view) return;
     this.view[method](...values);
-    this.kept.camera = this.view.camera();
-    this.dirty = true;
+    this.kept.camera = method === 'frame' ? null : this.view.camera();
     this.dispatchEvent(new Event('camera'));
   }
 
@@ -215,6 +223,7 @@ export class Stage extends EventTarget {
   /** The picture as it is now, as a PNG. @returns {Promise<Blob>} */
   async picture() {
     if (!this.view) throw new Error('There is no picture to save without a GPU.');
+    this.view.redraw();
     this.view.render();
     const blob = await new Promise((resolve) => this.canvas.toBlob(resolve, 'image/png'));
     if (!blob) throw new Error('The browser could not save the picture.');

@@ -67,8 +67,8 @@ function epsilonMark({ deformation, deformable, epsilon }) {
 const MOST_ROWS = 60;
 
 function partTable(app) {
+  const { colours } = app;
   const { parts, labels } = app.result;
-  const colours = app.stage.partColours;
   const row = (part, index) => h('tr', { tabindex: '0', on: {
     pointerenter: () => highlight(app, labels, index),
     focus: () => highlight(app, labels, index),

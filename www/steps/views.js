@@ -8,7 +8,7 @@
 import { number, percent, plural } from '../format.js';
 
 /** Styles of `Viewport.mark_faces`. */
-export const MARK = { highlight: 1, point: 2 };
+export const MARK = { highlight: 0, point: 1 };
 /** Scalar maps end at this quantile: distances have heavy tails. */
 const TOP = 0.98;
 
