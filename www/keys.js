@@ -38,7 +38,8 @@ export function keys({ app, stage, timeline, sheet }) {
 /** Whether the control that has the focus wants this key for itself. */
 function mine({ target, key }) {
   if (!(target instanceof Element)) return false;
-  if (target.closest('input[type=range], input[type=radio], select')) return key.startsWith('Arrow') || key === ' ' || key.length === 1 && /\w/.test(key);
+  if (target.closest('select')) return key !== 'Escape';
+  if (target.closest('input[type=range], input[type=radio]')) return key.startsWith('Arrow') || key === ' ';
   if (target.closest('button, summary, a, input, label')) return key === ' ' || key === 'Enter';
   return false;
 }

@@ -16,7 +16,7 @@ export class Timeline {
     this.time = 0;
     this.speed = 1;
     this.reference = false;
-    this.playing = !matchMedia('(prefers-reduced-motion: reduce)').matches;
+    this.playing = false;
     this.last = null;
     this.#build();
     app.on('source', () => this.#open());
@@ -81,13 +81,12 @@ export class Timeline {
   }
 
   #open() {
-    const { sequence, source } = this.app;
+    const { sequence } = this.app;
     this.host.hidden = this.poses === 0;
     this.range.max = this.end;
     this.time = 0;
     this.reference = false;
-    this.playing = this.playing || source.kind !== 'zoo';
-    if (matchMedia('(prefers-reduced-motion: reduce)').matches || this.poses < 2) this.playing = false;
+    this.playing = this.poses > 1 && !matchMedia('(prefers-reduced-motion: reduce)').matches;
     this.seconds = times(sequence);
     const every = Math.ceil((this.poses || 1) / MOST_TICKS);
     this.ticks.setAttribute('viewBox', `0 0 ${this.end || 1} 1`);
