@@ -1,1 +1,15 @@
-//! Drawing: camera, palettes, picking (plain), and the GPU scene (in the page bundle only).
+//! Drawing: camera, palettes, picking (plain), and the GPU stage (in the page bundle only).
+
+pub mod camera;
+pub mod colormap;
+pub mod colour;
+pub mod frame;
+#[cfg(all(target_arch = "wasm32", feature = "page"))]
+pub mod gpu;
+pub mod motion;
+pub mod normals;
+pub mod paint;
+pub mod palette;
+pub mod picking;
+pub mod stage;
+pub mod surface;

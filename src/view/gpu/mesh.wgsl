@@ -1,0 +1,247 @@
+// The surface: three corners a face, fetched from textures, and everything that is drawn of it.
+
+@group(1) @binding(0) var faces: texture_2d<u32>;    // corners' drawn vertices
+@group(1) @binding(1) var paints: texture_2d<u32>;   // colour and mark; boundary bits and label
+@group(1) @binding(2) var earlier: texture_2d<u32>;  // a drawn vertex's position (bits) and packed normal
+@group(1) @binding(3) var later: texture_2d<u32>;
+
+fn texel(i: u32) -> vec2u {
+    return vec2u(i & 2047u, i >> 11u);
+}
+
+struct Corner {
+    position: vec3f,
+    normal: vec3f,
+}
+
+fn corner(i: u32) -> Corner {
+    let face = textureLoad(faces, texel(i / 3u), 0);
+    let which = i % 3u;
+    let v = texel(select(select(face.x, face.y, which == 1u), face.z, which == 2u));
+    let a = textureLoad(earlier, v, 0);
+    let b = textureLoad(later, v, 0);
+    let t = stage.moment.x;
+    return Corner(
+        mix(bitcast<vec3f>(a.xyz), bitcast<vec3f>(b.xyz), t),
+        mix(unpack_direction(unpack2x16snorm(a.w)), unpack_direction(unpack2x16snorm(b.w)), t),
+    );
+}
+
+// --- shadow map: the surface as the key light sees it
+
+@vertex
+fn shadow_vertex(@builtin(vertex_index) i: u32) -> @builtin(position) vec4f {
+    return stage.light * vec4f(corner(i).position, 1.0);
+}
+
+// --- ground map: what is above the ground, by height, lowest first
+
+struct OverGround {
+    @builtin(position) position: vec4f,
+    @location(0) height: f32,
+}
+
+@vertex
+fn ground_vertex(@builtin(vertex_index) i: u32) -> OverGround {
+    let p = corner(i).position;
+    let height = max((p.y - stage.ground.y) / stage.eye.w, 0.0);
+    return OverGround(vec4f(ground_place(p), clamp(0.3 * height, 0.0, 0.99), 1.0), height);
+}
+
+// Red: touching; green: near; blue: anything.
+@fragment
+fn ground_fragment(in: OverGround) -> @location(0) vec4f {
+    let h = max(in.height, 0.0);
+    return vec4f(exp(-h * 28.0), exp(-h * 6.0), exp(-h * 0.6), 1.0);
+}
+
+// --- depth and normals at half the resolution, for the shade in hollows
+
+struct Deep {
+    @builtin(position) position: vec4f,
+    @location(0) normal: vec3f,
+    @location(1) depth: f32,
+}
+
+@vertex
+fn depth_vertex(@builtin(vertex_index) i: u32) -> Deep {
+    let c = corner(i);
+    let depth = dot(stage.eye.xyz - c.position, stage.back.xyz);
+    return Deep(stage.view * vec4f(c.position, 1.0), c.normal, (depth - stage.right.w) / (stage.up.w - stage.right.w));
+}
+
+@fragment
+fn depth_fragment(in: Deep, @builtin(front_facing) front: bool) -> @location(0) vec4f {
+    let n = in.normal / max(dot(abs(in.normal), vec3f(1.0)), 1e-9) * select(-1.0, 1.0, front);
+    let turned = (1.0 - abs(n.yx)) * select(vec2f(-1.0), vec2f(1.0), n.xy >= vec2f(0.0));
+    let flat_normal = select(turned, n.xy, n.z >= 0.0);
+    let d = clamp(in.depth, 0.0, 0.9999) * 255.0;
+    return vec4f(floor(d) / 255.0, fract(d), flat_normal * 0.5 + 0.5);
+}
+
+// --- the picture
+
+@group(2) @binding(0) var shadow_map: texture_depth_2d;
+@group(2) @binding(1) var shadow_sampler: sampler_comparison;
+@group(2) @binding(2) var ground_map: texture_2d<f32>;
+@group(2) @binding(3) var ground_sampler: sampler;
+@group(2) @binding(4) var hollows: texture_2d<f32>;
+
+struct Seen {
+    @builtin(position) position: vec4f,
+    @location(0) world: vec3f,
+    @location(1) normal: vec3f,
+    @location(2) weights: vec3f,
+    @location(3) @interpolate(flat) paint: vec2u,
+    @location(4) @interpolate(flat) face: u32,
+}
+
+@vertex
+fn picture_vertex(@builtin(vertex_index) i: u32) -> Seen {
+    let c = corner(i);
+    let which = i % 3u;
+    let weights = vec3f(f32(which == 0u), f32(which == 1u), f32(which == 2u));
+    let paint = textureLoad(paints, texel(i / 3u), 0).xy;
+    return Seen(stage.view * vec4f(c.position, 1.0), c.position, c.normal, weights, paint, i / 3u);
+}
+
+// Share of the key light that arrives, over a wide soft edge.
+fn lit(world: vec3f, normal: vec3f, pixel: vec2f) -> f32 {
+    let radius = stage.eye.w;
+    let p = stage.light * vec4f(world + normal * 0.02 * radius + stage.key.xyz * 0.01 * radius, 1.0);
+    let uv = p.xy * vec2f(0.5, -0.5) + 0.5;
+    let turn = noise(pixel) * 6.2831853;
+    var sum = 0.0;
+    for (var k = 0; k < 12; k++) {
+        // Vogel's spiral.
+        let angle = f32(k) * 2.3999632 + turn;
+        let at = sqrt((f32(k) + 0.5) / 12.0) * 0.018;
+        sum += textureSampleCompareLevel(shadow_map, shadow_sampler, uv + at * vec2f(cos(angle), sin(angle)), p.z);
+    }
+    return sum / 12.0;
+}
+
+// Shade in hollows, taken from the four nearest pixels of the half-resolution map that lie at the same depth.
+fn open(pixel: vec2f, depth: f32) -> f32 {
+    let size = vec2i(textureDimensions(hollows));
+    let at = pixel * 0.5 - 0.5;
+    let first = vec2i(floor(at));
+    let f = at - floor(at);
+    var sum = 0.0;
+    var weight = 0.0;
+    for (var k = 0; k < 4; k++) {
+        let step = vec2i(k & 1, k >> 1u);
+        let h = textureLoad(hollows, clamp(first + step, vec2i(0), size - 1), 0);
+        let near = abs(h.y + h.z / 255.0 - depth);
+        let bilinear = mix(1.0 - f.x, f.x, f32(step.x)) * mix(1.0 - f.y, f.y, f32(step.y));
+        let w = (bilinear + 1e-3) / (1e-3 + near * near * 4000.0);
+        sum += w * h.x;
+        weight += w;
+    }
+    return sum / weight;
+}
+
+// Distance in pixels from the corner where weight a falls from 1 and b, c are 0.
+fn from_corner(b: f32, c: f32, gb: vec2f, gc: vec2f) -> f32 {
+    let d = gb.x * gc.y - gb.y * gc.x;
+    return length(vec2f(b * gc.y - c * gb.y, c * gb.x - b * gc.x)) / max(abs(d), 1e-12);
+}
+
+@fragment
+fn picture_fragment(in: Seen, @builtin(front_facing) front: bool) -> @location(0) vec4f {
+    let dx = dpdx(in.weights);
+    let dy = dpdy(in.weights);
+    let pixel = in.position.xy;
+
+    // Colour of the paint.
+    let low = vec4u(in.paint.x, in.paint.x >> 8u, in.paint.x >> 16u, in.paint.x >> 24u) & vec4u(255u);
+    var albedo = decode(vec3f(low.xyz) / 255.0);
+    if low.w > 0u {
+        let accent = stage.accents[min(low.w - 1u, 3u)];
+        albedo = mix(albedo, accent.rgb, accent.a);
+    }
+    let label = f32(in.paint.y >> 8u);
+    if label > 0.0 && label == stage.moment.z {
+        albedo = mix(albedo, vec3f(1.0), 0.12);
+    }
+    let hovered = f32(in.face) == stage.moment.y;
+    if hovered {
+        albedo = mix(albedo, stage.accents[4].rgb, stage.accents[4].a);
+    }
+
+    // Lines: distance to the three edges and corners in pixels.
+    let grad = vec3f(length(vec2f(dx.x, dy.x)), length(vec2f(dx.y, dy.y)), length(vec2f(dx.z, dy.z)));
+    let far = max(in.weights, vec3f(0.0)) / max(grad, vec3f(1e-12));
+    let bits = in.paint.y;
+    var line = 1e9;
+    line = select(line, min(line, far.z), (bits & 1u) != 0u);
+    line = select(line, min(line, far.x), (bits & 2u) != 0u);
+    line = select(line, min(line, far.y), (bits & 4u) != 0u);
+    let gx = vec2f(dx.x, dy.x);
+    let gy = vec2f(dx.y, dy.y);
+    let gz = vec2f(dx.z, dy.z);
+    if (bits & 8u) != 0u {
+        line = min(line, from_corner(in.weights.y, in.weights.z, gy, gz));
+    }
+    if (bits & 16u) != 0u {
+        line = min(line, from_corner(in.weights.z, in.weights.x, gz, gx));
+    }
+    if (bits & 32u) != 0u {
+        line = min(line, from_corner(in.weights.x, in.weights.y, gx, gy));
+    }
+    let boundary = clamp(stage.lines.x + 0.5 - line, 0.0, 1.0) * stage.lines.z;
+    let wire_far = min(far.x, min(far.y, far.z));
+    // Where faces are smaller than a few pixels, wires would cover everything: they fade.
+    let height = 1.0 / max(max(grad.x, grad.y), max(grad.z, 1e-6));
+    let wire = clamp(stage.lines.y + 0.5 - wire_far, 0.0, 1.0) * stage.lines.w * smoothstep(1.5, 7.0, height);
+
+    // Light.
+    var n = normalize(in.normal + vec3f(0.0, 1e-9, 0.0)) * select(-1.0, 1.0, front);
+    let towards = normalize(stage.eye.xyz - in.world);
+    let depth = (dot(stage.eye.xyz - in.world, stage.back.xyz) - stage.right.w) / (stage.up.w - stage.right.w);
+    let hollow = open(pixel, depth);
+    let wrapped = clamp((dot(n, stage.key.xyz) + 0.3) / 1.3, 0.0, 1.0);
+    let shade = mix(1.0, lit(in.world, n, pixel), stage.key.w);
+    let key = stage.key_light.rgb * pow(wrapped, 1.4) * shade;
+    // What stands under the body or near the ground sees less of both sky and lit ground.
+    let above = (in.world.y - stage.ground.y) / stage.eye.w;
+    let below = textureSampleLevel(ground_map, ground_sampler, ground_place(in.world) * vec2f(0.5, -0.5) + 0.5, 0.0);
+    let covered = 1.0 - 0.55 * below.z * exp(-1.5 * max(above, 0.0));
+    let sky = stage.sky_light.rgb * (0.5 + 0.5 * n.y);
+    let bounce = stage.ground_light.rgb * (0.5 - 0.5 * n.y) * covered * mix(0.45, 1.0, smoothstep(0.0, 0.35, above));
+    let edge = pow(1.0 - clamp(dot(n, towards), 0.0, 1.0), 3.0) * (0.5 + 0.5 * n.y);
+    let rim = stage.key_light.rgb * (stage.key_light.w * edge);
+    // Light that has gone from clay to clay takes on its colour: hollows are warm, not grey.
+    let tinted = pow(vec3f(max(hollow, 1e-3)), 1.35 - 0.7 * albedo);
+    var colour = albedo * (key * mix(vec3f(1.0), tinted, 0.45) + (sky + bounce) * tinted + rim);
+
+    colour = mix(colour, albedo * 0.25, wire);
+    colour = mix(colour, stage.line_colour.rgb, boundary * stage.line_colour.a);
+    return vec4f(encode(colour) + (noise(pixel) - 0.5) * stage.moment.w, 1.0);
+}
+
+// --- the quiet studio around it
+
+@fragment
+fn studio_fragment(in: Screen) -> @location(0) vec4f {
+    let pixel = in.position.xy;
+    let aside = (pixel - stage.window.zw) / stage.back.w;
+    // Brightest a little below the middle, as if a lamp stood over the figure.
+    let off = length((aside - vec2f(0.0, 0.06)) * vec2f(0.85, 1.0));
+    var colour = mix(stage.back_middle.rgb, stage.back_rim.rgb, smoothstep(0.0, 0.75, off));
+    let ray = stage.right.xyz * aside.x - stage.up.xyz * aside.y - stage.back.xyz;
+    let fall = stage.ground.y - stage.eye.y;
+    if ray.y * fall > 0.0 && fall < 0.0 {
+        let p = stage.eye.xyz + ray * (fall / ray.y);
+        let place = (p.xz - stage.ground.xz) / stage.ground.w;
+        if max(abs(place.x), abs(place.y)) < 1.0 {
+            let s = textureSampleLevel(ground_map, ground_sampler, place * vec2f(0.5, -0.5) + 0.5, 0.0);
+            let rim = smoothstep(1.0, 0.7, length(place));
+            let dark = (1.0 - 0.55 * s.x) * (1.0 - 0.4 * s.y) * (1.0 - 0.38 * s.z);
+            // Seen from very low, the ground is a line: the shadow fades.
+            let grazing = smoothstep(0.0, 0.06, -ray.y / length(ray));
+            colour *= mix(vec3f(1.0), pow(vec3f(dark), vec3f(0.92, 1.0, 1.06)), rim * grazing * stage.back_rim.w);
+        }
+    }
+    return vec4f(encode(colour) + (noise(pixel) - 0.5) * stage.moment.w, 1.0);
+}

@@ -1,0 +1,303 @@
+//! The stage: the figure, its paint, the camera and the light, and what of it the GPU does not have yet.
+
+use super::camera::{Ball, Camera, Window};
+use super::frame::{Frame, Theme, light_map};
+use super::motion::{Extent, Moment, Motion};
+use super::paint::Paint;
+use super::picking::{Hit, pick};
+use super::surface::Surface;
+use glam::Vec3;
+
+/// Direction to the key light in the camera's horizontal axes: from the left, from above, from the front. The light
+/// turns with the camera, as if the figure stood on a turntable.
+const KEY: Vec3 = Vec3::new(-0.5, 1.0, 0.5);
+
+/// Everything that a picture is made of.
+#[derive(Clone, Debug)]
+pub struct Stage {
+    motion: Motion,
+    /// Of the motion as it is; made when it is first needed.
+    surface: Option<Surface>,
+    /// Colours of the faces. Call [`Stage::repaint`] after changing them.
+    pub paint: Paint,
+    /// Where one looks from.
+    pub camera: Camera,
+    window: Window,
+    pixel_ratio: f32,
+    time: f32,
+    loops: bool,
+    dark: bool,
+    boundaries: bool,
+    wires: bool,
+    hovered: Option<usize>,
+    /// Packed normals of each shape, once it was seen.
+    normals: Vec<Option<Vec<u32>>>,
+    extents: Vec<Option<Extent>>,
+    whole: [Extent; 2],
+    positions: Vec<Vec3>,
+    positions_at: Option<Moment>,
+    stale: Stale,
+}
+
+/// What has changed since the last frame.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Stale {
+    /// The faces.
+    pub surface: bool,
+    /// The paint.
+    pub paint: bool,
+    /// Anything.
+    pub picture: bool,
+}
+
+impl Default for Stage {
+    fn default() -> Self {
+        let extent = Motion::default().extent();
+        Self {
+            motion: Motion::default(),
+            surface: None,
+            paint: Paint::default(),
+            camera: Camera::default(),
+            window: Window { width: 1.0, height: 1.0, insets: [0.0; 4] },
+            pixel_ratio: 1.0,
+            time: -1.0,
+            loops: false,
+            dark: false,
+            boundaries: true,
+            wires: false,
+            hovered: None,
+            normals: vec![None],
+            extents: vec![None],
+            whole: [extent; 2],
+            positions: Vec::new(),
+            positions_at: None,
+            stale: Stale { surface: true, paint: true, picture: true },
+        }
+    }
+}
+
+impl Stage {
+    /// Puts another mesh on the stage, in bare clay and still.
+    pub fn set_motion(&mut self, motion: Motion) {
+        self.paint.reset(motion.faces().len());
+        self.hovered = None;
+        self.time = -1.0;
+        self.take(motion);
+    }
+
+    /// Puts other poses in place of those there are: T·3·#V coordinates. The error is a sentence.
+    pub fn set_poses(&mut self, positions: &[f32]) -> Result<(), &'static str> {
+        let mut motion = std::mem::take(&mut self.motion);
+        let result = motion.set_poses(positions);
+        self.take(motion);
+        result
+    }
+
+    fn take(&mut self, motion: Motion) {
+        self.normals = vec![None; motion.poses() + 1];
+        self.extents = vec![None; motion.poses() + 1];
+        self.whole = [motion.reference_extent(), motion.extent()];
+        self.motion = motion;
+        self.surface = None;
+        self.positions_at = None;
+        self.stale = Stale { surface: true, paint: true, picture: true };
+    }
+
+    /// The motion.
+    pub fn motion(&self) -> &Motion {
+        &self.motion
+    }
+
+    /// Its surface.
+    pub fn surface(&mut self) -> &Surface {
+        self.surface.get_or_insert_with(|| Surface::new(&self.motion))
+    }
+
+    /// Paints by parts: see [`Paint::parts`].
+    pub fn paint_parts(&mut self, labels: &[u32], count: usize) -> Result<(), &'static str> {
+        let surface = self.surface.get_or_insert_with(|| Surface::new(&self.motion));
+        self.paint.parts(surface, labels, count)?;
+        self.repaint();
+        Ok(())
+    }
+
+    /// The paint has changed.
+    pub fn repaint(&mut self) {
+        self.stale.paint = true;
+        self.stale.picture = true;
+    }
+
+    /// The picture is to be drawn again.
+    pub fn redraw(&mut self) {
+        self.stale.picture = true;
+    }
+
+    /// What has changed since the last call.
+    pub fn take_stale(&mut self) -> Stale {
+        std::mem::replace(&mut self.stale, Stale { surface: false, paint: false, picture: false })
+    }
+
+    /// What has changed.
+    pub fn stale(&self) -> Stale {
+        self.stale
+    }
+
+    /// The window.
+    pub fn window(&self) -> &Window {
+        &self.window
+    }
+
+    /// Sets the size of the window, CSS pixels, and the device pixels in one of them.
+    pub fn set_window(&mut self, width: f32, height: f32, pixel_ratio: f32) {
+        let usable = |x: f32| if x > 0.0 && x.is_finite() { x } else { 1.0 };
+        (self.window.width, self.window.height) = (usable(width), usable(height));
+        self.pixel_ratio = usable(pixel_ratio).min(4.0);
+        self.redraw();
+    }
+
+    /// Device pixels in a CSS pixel.
+    pub fn pixel_ratio(&self) -> f32 {
+        self.pixel_ratio
+    }
+
+    /// Sets what panels cover at the left, top, right and bottom, CSS pixels.
+    pub fn set_insets(&mut self, insets: [f32; 4]) {
+        let insets = insets.map(|x| if x > 0.0 && x.is_finite() { x } else { 0.0 });
+        self.changed(|s| &mut s.window.insets, insets);
+    }
+
+    /// Sets the time, in poses: see [`Motion::at`].
+    pub fn set_time(&mut self, time: f32) {
+        let before = self.moment();
+        self.time = if time.is_nan() { -1.0 } else { time };
+        self.stale.picture |= before != self.moment();
+    }
+
+    /// Sets whether the last pose goes over into the first.
+    pub fn set_loop(&mut self, on: bool) {
+        self.changed(|s| &mut s.loops, on);
+    }
+
+    /// Sets the dark or the light studio.
+    pub fn set_dark(&mut self, on: bool) {
+        self.changed(|s| &mut s.dark, on);
+    }
+
+    /// Sets whether lines are drawn where labels differ.
+    pub fn set_boundaries(&mut self, on: bool) {
+        self.changed(|s| &mut s.boundaries, on);
+    }
+
+    /// Sets whether edges are drawn.
+    pub fn set_wires(&mut self, on: bool) {
+        self.changed(|s| &mut s.wires, on);
+    }
+
+    /// Sets the face under the pointer.
+    pub fn hover(&mut self, face: Option<usize>) {
+        self.changed(|s| &mut s.hovered, face);
+    }
+
+    fn changed<T: PartialEq>(&mut self, place: impl Fn(&mut Self) -> &mut T, value: T) {
+        if *place(self) != value {
+            *place(self) = value;
+            self.stale.picture = true;
+        }
+    }
+
+    /// The moment that is shown.
+    pub fn moment(&self) -> Moment {
+        self.motion.at(self.time, self.loops)
+    }
+
+    /// Positions of a shape and packed normals of the drawn vertices in it.
+    pub fn shape(&mut self, shape: usize) -> (&Surface, &[Vec3], &[u32]) {
+        let surface = self.surface.get_or_insert_with(|| Surface::new(&self.motion));
+        let positions = self.motion.shape(shape);
+        let normals: &[u32] = match self.normals.get_mut(shape) {
+            Some(kept) => kept.get_or_insert_with(|| surface.normals(self.motion.faces(), positions)),
+            None => &[],
+        };
+        (surface, positions, normals)
+    }
+
+    /// Two words of paint for each face.
+    pub fn words(&mut self) -> Vec<[u32; 2]> {
+        let surface = self.surface.get_or_insert_with(|| Surface::new(&self.motion));
+        self.paint.words(surface, self.motion.faces())
+    }
+
+    /// The box around all that the time's part of the motion (poses, or reference) does.
+    fn whole(&self) -> Extent {
+        let moment = self.moment();
+        if moment.from > 0 {
+            return self.whole[1];
+        }
+        self.whole[0].towards(&self.whole[1], if moment.to > 0 { moment.part } else { 0.0 })
+    }
+
+    /// The ball around it.
+    pub fn ball(&self) -> Ball {
+        self.whole().ball()
+    }
+
+    fn extent(&mut self, shape: usize) -> Extent {
+        let motion = &self.motion;
+        match self.extents.get_mut(shape) {
+            Some(kept) => *kept.get_or_insert_with(|| Extent::of(motion.shape(shape).iter())),
+            None => self.whole[0],
+        }
+    }
+
+    /// Moves the camera so that the whole motion fits into the free part of the window.
+    pub fn frame_all(&mut self) {
+        let reference = self.moment().to == 0;
+        let centre = self.whole().centre();
+        self.camera.frame(&self.window, self.motion.sample(reference), centre);
+        self.redraw();
+    }
+
+    /// The point of the surface under a point of the window, CSS pixels.
+    pub fn pick(&mut self, x: f32, y: f32) -> Option<Hit> {
+        let moment = self.moment();
+        if self.positions_at != Some(moment) {
+            self.motion.positions(moment, &mut self.positions);
+            self.positions_at = Some(moment);
+        }
+        pick(self.camera.ray(&self.window, x, y), self.motion.faces(), &self.positions)
+    }
+
+    /// What the shaders need to know of this moment.
+    pub fn frame(&mut self) -> Frame {
+        let moment = self.moment();
+        let now = self.extent(moment.from).towards(&self.extent(moment.to), moment.part);
+        let radius = self.extent(if self.motion.poses() > 0 { 1 } else { 0 }).ball().radius;
+        let ball = now.ball();
+        let (camera, ratio) = (self.camera, self.pixel_ratio);
+        let [right, up, back] = camera.axes();
+        let (near, far) = camera.range(ball);
+        let (cx, cy) = self.window.centre();
+        let level = right.cross(Vec3::Y);
+        let key = (right * KEY.x + Vec3::Y * KEY.y - level * KEY.z).normalize();
+        let floor = self.whole().low.y;
+        // The middle between the figure and its shadow.
+        let middle = ball.centre - Vec3::new(key.x, 0.0, key.z) / key.y * (0.5 * (ball.centre.y - floor));
+        let side = 1.1 * ball.radius + 0.75 * radius;
+        let label = self.hovered.and_then(|f| self.paint.label(f)).map_or(0.0, |l| l as f32 + 1.0);
+        let on = |yes: bool, strength: f32| if yes { strength } else { 0.0 };
+        Frame {
+            view: camera.projection(&self.window, ball),
+            light: light_map(key, ball.centre, ball.radius),
+            eye: camera.eye().extend(radius),
+            right: right.extend(near),
+            up: up.extend(far),
+            back: back.extend(self.window.focal() * ratio),
+            window: glam::Vec4::new(self.window.width, self.window.height, cx, cy) * ratio,
+            ground: Vec3::new(middle.x, floor, middle.z).extend(side),
+            key: key.extend(0.8),
+            lines: glam::Vec4::new(0.62 * ratio, 0.18 * ratio, on(self.boundaries, 1.0), on(self.wires, 0.4)),
+            moment: glam::Vec4::new(moment.part, self.hovered.map_or(-1.0, |f| f as f32), label, 1.0 / 255.0),
+            theme: Theme::new(self.dark),
+        }
+    }
+}

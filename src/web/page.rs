@@ -1,0 +1,298 @@
+//! The page's bundle: one class, `Viewport`, a canvas with a figure on it.
+//!
+//! Lengths are CSS pixels from the canvas's top left corner. What cannot be done is thrown as one sentence.
+
+use crate::view::camera::Camera;
+use crate::view::colormap::ColourMap;
+use crate::view::gpu::Renderer;
+use crate::view::gpu::device::{Backend, Gpu};
+use crate::view::motion::Motion;
+use crate::view::stage::Stage;
+use js_sys::{Error, Float32Array, Function, Reflect, Uint8Array};
+use wasm_bindgen::prelude::*;
+use web_sys::HtmlCanvasElement;
+
+/// Writes a sentence to the browser's console.
+pub fn log(message: &str) {
+    web_sys::console::error_1(&JsValue::from_str(message));
+}
+
+/// Runs once when the bundle is loaded.
+#[wasm_bindgen(start)]
+pub fn start() {
+    std::panic::set_hook(Box::new(|info| log(&info.to_string())));
+}
+
+/// A canvas with a figure on it.
+#[wasm_bindgen]
+pub struct Viewport {
+    canvas: HtmlCanvasElement,
+    renderer: Renderer,
+    stage: Stage,
+    /// The shapes that the GPU has in its two places.
+    places: [Option<usize>; 2],
+    /// Whether the camera was ever set.
+    framed: bool,
+    device_size: (u32, u32),
+}
+
+#[wasm_bindgen]
+impl Viewport {
+    /// Opens `canvas` with a backend, `webgpu` or `webgl2`. Rejects with a sentence.
+    pub async fn create(canvas: HtmlCanvasElement, backend: String) -> Result<Viewport, JsValue> {
+        let kind = match backend.as_str() {
+            "webgpu" => Backend::WebGpu,
+            "webgl2" => Backend::WebGl2,
+            _ => return Err(sentence("The backend must be webgpu or webgl2.")),
+        };
+        let gpu = Gpu::open(canvas.clone(), kind).await.map_err(|e| sentence(&e))?;
+        Ok(Self {
+            canvas,
+            renderer: Renderer::new(gpu),
+            stage: Stage::default(),
+            places: [None; 2],
+            framed: false,
+            device_size: (0, 0),
+        })
+    }
+
+    /// `webgpu` or `webgl2`.
+    pub fn backend(&self) -> String {
+        match self.renderer.gpu().backend {
+            Backend::WebGpu => "webgpu".into(),
+            Backend::WebGl2 => "webgl2".into(),
+        }
+    }
+
+    /// Whether the device is lost: free this viewport and make another on a new canvas.
+    pub fn lost(&self) -> bool {
+        if self.renderer.gpu().lost() {
+            return true;
+        }
+        self.renderer.gpu().backend == Backend::WebGl2 && self.context_lost().unwrap_or(false)
+    }
+
+    fn context_lost(&self) -> Option<bool> {
+        let context = self.canvas.get_context("webgl2").ok()??;
+        let asks = Reflect::get(&context, &"isContextLost".into()).ok()?.dyn_into::<Function>().ok()?;
+        asks.call0(&context).ok()?.as_bool()
+    }
+
+    /// Tells the canvas's size on the page.
+    pub fn resize(&mut self, width: f32, height: f32, device_pixel_ratio: f32) {
+        self.stage.set_window(width, height, device_pixel_ratio);
+        let ratio = self.stage.pixel_ratio();
+        let pixels = |x: f32| (x * ratio).round().clamp(1.0, self.renderer.gpu().longest as f32) as u32;
+        let size = (pixels(self.stage.window().width), pixels(self.stage.window().height));
+        if size != self.device_size {
+            self.device_size = size;
+            self.canvas.set_width(size.0);
+            self.canvas.set_height(size.1);
+            self.renderer.resize(size.0, size.1);
+        }
+    }
+
+    /// Puts a mesh on the stage: 3·#F vertex numbers and 3·#V coordinates.
+    pub fn set_mesh(&mut self, faces: &[u32], reference: &[f32]) -> Result<(), JsValue> {
+        if !self.renderer.gpu().holds(faces.len()) {
+            return Err(sentence("This mesh has more faces than this browser's graphics can hold."));
+        }
+        self.stage.set_motion(Motion::new(faces, reference).map_err(sentence)?);
+        self.places = [None; 2];
+        if !self.framed {
+            self.frame();
+        }
+        Ok(())
+    }
+
+    /// Gives the mesh poses: T·3·#V coordinates, or none.
+    pub fn set_poses(&mut self, positions: &[f32]) -> Result<(), JsValue> {
+        self.places = [None; 2];
+        self.stage.set_poses(positions).map_err(sentence)
+    }
+
+    /// Sets the time in poses: 2.25 is a quarter of the way from pose 2 to pose 3, −1 the reference.
+    pub fn set_time(&mut self, time: f32) {
+        self.stage.set_time(time);
+    }
+
+    /// Sets whether the last pose goes over into the first.
+    pub fn set_loop(&mut self, on: bool) {
+        self.stage.set_loop(on);
+    }
+
+    /// Bare clay.
+    pub fn paint_clay(&mut self) {
+        self.stage.paint.clay();
+        self.stage.repaint();
+    }
+
+    /// Parts: #F numbers below `count`.
+    pub fn paint_parts(&mut self, labels: &[u32], count: usize) -> Result<(), JsValue> {
+        self.stage.paint_parts(labels, count).map_err(sentence)
+    }
+
+    /// A field: #F numbers, shown from `low` to `high` with `viridis`, `cividis` or `diverging`.
+    pub fn paint_scalar(&mut self, values: &[f32], low: f32, high: f32, map: &str) -> Result<(), JsValue> {
+        let map = colour_map_named(map)?;
+        self.stage.paint.scalar(values, low, high, map).map_err(sentence)?;
+        self.stage.repaint();
+        Ok(())
+    }
+
+    /// A set of faces: #F numbers, 0 outside.
+    pub fn paint_set(&mut self, mask: &[u8]) -> Result<(), JsValue> {
+        self.stage.paint.set(mask).map_err(sentence)?;
+        self.stage.repaint();
+        Ok(())
+    }
+
+    /// Sets whether lines are drawn where paint labels differ.
+    pub fn set_boundaries(&mut self, on: bool) {
+        self.stage.set_boundaries(on);
+    }
+
+    /// Sets whether edges are drawn.
+    pub fn set_wireframe(&mut self, on: bool) {
+        self.stage.set_wires(on);
+    }
+
+    /// Marks exactly these faces with a style (0 to 3); with none, the style's marks go.
+    pub fn mark_faces(&mut self, faces: &[u32], style: usize) {
+        self.stage.paint.mark(faces, style);
+        self.stage.repaint();
+    }
+
+    /// Shows which face is under the pointer; −1 for none.
+    pub fn hover(&mut self, face: i32) {
+        self.stage.hover(usize::try_from(face).ok());
+    }
+
+    /// What is under a point: face, three weights, x, y, z in the pose that is shown.
+    pub fn pick(&mut self, x: f32, y: f32) -> Option<Float32Array> {
+        let hit = self.stage.pick(x, y)?;
+        let [a, b, c] = hit.weights;
+        let p = hit.point;
+        Some(Float32Array::from(&[hit.face as f32, a, b, c, p.x, p.y, p.z][..]))
+    }
+
+    /// Three sRGB bytes for each part.
+    pub fn part_colours(&self) -> Uint8Array {
+        Uint8Array::from(self.stage.paint.part_colours().as_flattened())
+    }
+
+    /// A colour map as 256 times three sRGB bytes.
+    pub fn colour_map(&self, name: &str) -> Result<Uint8Array, JsValue> {
+        Ok(Uint8Array::from(colour_map_named(name)?.table().as_flattened()))
+    }
+
+    /// Turns by a drag.
+    pub fn orbit(&mut self, dx: f32, dy: f32) {
+        self.stage.camera.orbit(dx, dy);
+        self.moved();
+    }
+
+    /// Moves with a drag.
+    pub fn pan(&mut self, dx: f32, dy: f32) {
+        let (window, ball) = (*self.stage.window(), self.stage.ball());
+        self.stage.camera.pan(&window, ball, dx, dy);
+        self.moved();
+    }
+
+    /// Comes nearer by a factor (above 1) or goes away, towards a point.
+    pub fn zoom(&mut self, factor: f32, x: f32, y: f32) {
+        let (window, ball) = (*self.stage.window(), self.stage.ball());
+        self.stage.camera.zoom(&window, ball, factor, x, y);
+        self.moved();
+    }
+
+    /// Fits the whole motion into what panels leave free, looking in the same direction.
+    pub fn frame(&mut self) {
+        self.stage.frame_all();
+        self.framed = true;
+    }
+
+    /// The camera as six numbers.
+    pub fn camera(&self) -> Float32Array {
+        Float32Array::from(&self.stage.camera.numbers()[..])
+    }
+
+    /// Sets the camera from the numbers of `camera()`; other numbers change nothing.
+    pub fn set_camera(&mut self, numbers: &[f32]) {
+        if let Some(camera) = Camera::from_numbers(numbers) {
+            self.stage.camera = camera;
+            self.moved();
+        }
+    }
+
+    fn moved(&mut self) {
+        self.framed = true;
+        self.stage.redraw();
+    }
+
+    /// Sets the dark or the light studio.
+    pub fn set_theme(&mut self, dark: bool) {
+        self.stage.set_dark(dark);
+    }
+
+    /// Tells what panels cover of the canvas.
+    pub fn set_insets(&mut self, left: f32, top: f32, right: f32, bottom: f32) {
+        self.stage.set_insets([left, top, right, bottom]);
+    }
+
+    /// Makes the next `render` draw in any case. The canvas keeps its picture until the page is next shown: for a
+    /// screenshot, call `redraw`, `render` and `canvas.toBlob` one after another.
+    pub fn redraw(&mut self) {
+        self.stage.redraw();
+    }
+
+    /// Draws a frame if anything changed since the last; whether it did.
+    pub fn render(&mut self) -> bool {
+        if !self.stage.stale().picture || self.device_size.0 == 0 || self.renderer.gpu().lost() {
+            return false;
+        }
+        let stale = self.stage.take_stale();
+        if stale.surface {
+            if let Err(problem) = self.renderer.set_surface(self.stage.surface()) {
+                log(problem);
+            }
+            self.places = [None; 2];
+        }
+        if stale.surface || stale.paint {
+            self.renderer.write_paint(&self.stage.words());
+        }
+        self.upload_shapes();
+        let frame = self.stage.frame();
+        let drawn = self.renderer.draw(&frame);
+        if !drawn {
+            self.stage.redraw();
+        }
+        drawn
+    }
+
+    /// Sees to it that the GPU has the two shapes of the moment, and knows which is the earlier.
+    fn upload_shapes(&mut self) {
+        let moment = self.stage.moment();
+        let held = |places: &[Option<usize>; 2], shape| places.iter().position(|&p| p == Some(shape));
+        let earlier = held(&self.places, moment.from).unwrap_or_else(|| match held(&self.places, moment.to) {
+            Some(place) if moment.to != moment.from => 1 - place,
+            _ => 0,
+        });
+        for (place, shape) in [(earlier, moment.from), (1 - earlier, moment.to)] {
+            if self.places[place] != Some(shape) && !(place != earlier && moment.to == moment.from) {
+                let (surface, positions, normals) = self.stage.shape(shape);
+                self.renderer.write_shape(place, surface, positions, normals);
+                self.places[place] = Some(shape);
+            }
+        }
+        self.renderer.set_earlier(earlier);
+    }
+}
+
+fn colour_map_named(name: &str) -> Result<ColourMap, JsValue> {
+    ColourMap::named(name).ok_or_else(|| sentence("The colour map must be viridis, cividis or diverging."))
+}
+
+fn sentence(text: &str) -> JsValue {
+    Error::new(text).into()
+}

@@ -1,0 +1,235 @@
+//! A Chromium process and the messages to and from it.
+
+use serde_json::{Value, json};
+use sinew::clock;
+use std::collections::VecDeque;
+use std::io::{BufRead, BufReader, Write};
+use std::path::{Path, PathBuf};
+use std::process::{Child, ChildStdin, Command, Stdio};
+use std::sync::mpsc::{Receiver, RecvTimeoutError, channel};
+use std::sync::{Mutex, MutexGuard, PoisonError};
+use std::time::Duration;
+
+/// Seconds to wait for the answer to anything that should be answered at once.
+pub const PATIENCE: f64 = 60.0;
+
+/// How the browser may draw.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Backend {
+    /// WebGPU on a software adapter.
+    WebGpu,
+    /// No WebGPU at all: the page has to fall back.
+    WebGl2,
+}
+
+impl Backend {
+    /// Short name, for files.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::WebGpu => "webgpu",
+            Self::WebGl2 => "webgl2",
+        }
+    }
+
+    /// The browser of this backend, started if it is not running. Held until the guard goes.
+    pub fn browser(self) -> MutexGuard<'static, Browsers> {
+        static BROWSERS: Mutex<Browsers> = Mutex::new(Browsers([None, None]));
+        // A test that failed while it held a browser closed its tab on the way out.
+        let mut browsers = BROWSERS.lock().unwrap_or_else(PoisonError::into_inner);
+        if browsers.0[self as usize].is_none() {
+            browsers.0[self as usize] = Some(Browser::start(self));
+        }
+        browsers
+    }
+}
+
+/// One browser for each backend, once started.
+pub struct Browsers([Option<Browser>; 2]);
+
+impl Browsers {
+    /// A browser that was started.
+    pub fn get(&mut self, backend: Backend) -> &mut Browser {
+        self.0[backend as usize].as_mut().expect("the browser of this backend is running")
+    }
+}
+
+/// A running Chromium. It ends by itself when this program does, because its pipe closes.
+pub struct Browser {
+    input: ChildStdin,
+    messages: Receiver<Value>,
+    events: VecDeque<Value>,
+    last: u64,
+    process: Child,
+}
+
+/// What every start needs: no window, no first-run pages, no calls home.
+const ARGUMENTS: &[&str] = &[
+    "--remote-debugging-pipe",
+    "--headless=new",
+    "--disable-quic",
+    "--no-first-run",
+    "--no-default-browser-check",
+    "--disable-background-networking",
+    "--disable-component-update",
+    "--disable-default-apps",
+    "--disable-extensions",
+    "--disable-sync",
+    "--disable-dev-shm-usage",
+    "--disable-background-timer-throttling",
+    "--disable-backgrounding-occluded-windows",
+    "--disable-renderer-backgrounding",
+    "--hide-scrollbars",
+    "--mute-audio",
+    "--force-color-profile=srgb",
+];
+
+/// WebGPU without a graphics card. With only some of these there is an adapter, but the canvas stays blank.
+const WEBGPU: &[&str] = &[
+    "--enable-unsafe-webgpu",
+    "--use-webgpu-adapter=swiftshader",
+    "--use-angle=swiftshader",
+    "--enable-features=Vulkan",
+    "--use-vulkan=swiftshader",
+];
+
+/// WebGL2 without a graphics card, and no WebGPU.
+const WEBGL2: &[&str] = &["--enable-unsafe-swiftshader", "--use-angle=swiftshader", "--disable-features=WebGPUService"];
+
+impl Browser {
+    fn start(backend: Backend) -> Self {
+        let profile = Path::new(env!("CARGO_TARGET_TMPDIR")).join(format!("chromium-{}", backend.name()));
+        // Nothing is left from the last run: no cache, no storage, no lock.
+        let _ = std::fs::remove_dir_all(&profile);
+        // The browser reads its protocol from descriptor 3 and writes it to 4; the shell puts our pipe there.
+        let mut command = Command::new("sh");
+        command.args(["-c", r#"exec "$0" "$@" 3<&0 4>&1 </dev/null >/dev/null"#]).arg(program());
+        command.args(ARGUMENTS).arg(format!("--user-data-dir={}", profile.display()));
+        command.args(if backend == Backend::WebGpu { WEBGPU } else { WEBGL2 });
+        if is_root() {
+            command.arg("--no-sandbox");
+        }
+        command.stdin(Stdio::piped()).stdout(Stdio::piped()).stderr(Stdio::null());
+        let mut process = command.spawn().expect("a shell is there");
+        let input = process.stdin.take().expect("its input is a pipe");
+        let output = process.stdout.take().expect("its output is a pipe");
+        let (sender, messages) = channel();
+        std::thread::spawn(move || {
+            for message in BufReader::new(output).split(0) {
+                let Ok(Ok(message)) = message.map(|bytes| serde_json::from_slice(&bytes)) else { return };
+                if sender.send(message).is_err() {
+                    return;
+                }
+            }
+        });
+        let mut browser = Self { input, messages, events: VecDeque::new(), last: 0, process };
+        browser.call("Browser.getVersion", json!({}), None);
+        browser
+    }
+
+    /// Calls a method, in a session if one is given, and returns its result. An error of the protocol fails the test.
+    pub fn call(&mut self, method: &str, parameters: Value, session: Option<&str>) -> Value {
+        match self.try_call(method, parameters, session, PATIENCE) {
+            Ok(result) => result,
+            Err(error) => panic!("the browser refused {method}: {error}"),
+        }
+    }
+
+    /// The same for what may rightly fail, such as code that runs while the page goes elsewhere, waiting no longer
+    /// than the given seconds.
+    pub fn try_call(
+        &mut self,
+        method: &str,
+        parameters: Value,
+        session: Option<&str>,
+        seconds: f64,
+    ) -> Result<Value, String> {
+        let id = self.send(method, parameters, session);
+        let deadline = clock::seconds() + seconds;
+        loop {
+            let Some(mut message) = self.receive(deadline) else {
+                return Err(format!("no answer in {seconds} seconds"));
+            };
+            if message["id"] == json!(id) {
+                return match message.get("error") {
+                    Some(error) => Err(error.to_string()),
+                    None => Ok(message["result"].take()),
+                };
+            }
+            if message.get("id").is_none() {
+                self.events.push_back(message);
+            }
+        }
+    }
+
+    /// Calls a method and does not wait for its answer.
+    pub fn send(&mut self, method: &str, parameters: Value, session: Option<&str>) -> u64 {
+        self.last += 1;
+        let mut message = json!({ "id": self.last, "method": method, "params": parameters });
+        if let Some(session) = session {
+            message["sessionId"] = json!(session);
+        }
+        let mut bytes = message.to_string().into_bytes();
+        bytes.push(0);
+        if self.input.write_all(&bytes).is_err() {
+            panic!("the browser has ended: {:?}", self.process.try_wait());
+        }
+        self.last
+    }
+
+    /// What has happened since this was last asked: waits up to `seconds` for something if nothing has.
+    pub fn events(&mut self, seconds: f64) -> Vec<Value> {
+        let deadline = clock::seconds() + seconds;
+        while let Some(message) = self.receive(if self.events.is_empty() { deadline } else { 0.0 }) {
+            if message.get("id").is_none() {
+                self.events.push_back(message);
+            }
+        }
+        self.events.drain(..).collect()
+    }
+
+    /// Hears everything that happens in a session, and lets it go on if it waits for that. A worker is held at its
+    /// start until it is listened to, so that nothing it does goes unheard.
+    fn listen(&mut self, session: &str) {
+        for method in ["Runtime.enable", "Log.enable", "Network.enable", "Inspector.enable"] {
+            self.send(method, json!({}), Some(session));
+        }
+        let workers = json!({ "autoAttach": true, "waitForDebuggerOnStart": true, "flatten": true });
+        self.send("Target.setAutoAttach", workers, Some(session));
+        self.send("Runtime.runIfWaitingForDebugger", json!({}), Some(session));
+    }
+
+    /// The next message, if one comes before the deadline.
+    fn receive(&mut self, deadline: f64) -> Option<Value> {
+        let left = Duration::from_secs_f64((deadline - clock::seconds()).max(0.0));
+        match self.messages.recv_timeout(left) {
+            Ok(message) => {
+                if message["method"] == "Target.attachedToTarget"
+                    && let Some(session) = message["params"]["sessionId"].as_str()
+                {
+                    self.listen(&session.to_owned());
+                }
+                Some(message)
+            }
+            Err(RecvTimeoutError::Timeout) => None,
+            Err(RecvTimeoutError::Disconnected) => panic!("the browser has ended: {:?}", self.process.try_wait()),
+        }
+    }
+}
+
+/// The browser to run: the variable `CHROMIUM`, or the first of the usual names on the path.
+fn program() -> PathBuf {
+    if let Some(program) = std::env::var_os("CHROMIUM") {
+        return program.into();
+    }
+    let path = std::env::var_os("PATH").unwrap_or_default();
+    let names = ["chromium", "chromium-browser", "google-chrome", "google-chrome-stable", "chrome"];
+    let found = names.iter().find_map(|name| {
+        std::env::split_paths(&path).map(|folder| folder.join(name)).find(|program| program.is_file())
+    });
+    found.expect("Chromium is missing: install your system's packages `chromium` and `chromium-driver`")
+}
+
+/// Whether this is the superuser, for whom Chromium refuses to start inside its sandbox.
+fn is_root() -> bool {
+    Command::new("id").arg("-u").output().is_ok_and(|output| output.stdout.trim_ascii() == b"0")
+}

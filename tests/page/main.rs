@@ -1,0 +1,8 @@
+//! The built page in a real browser, on WebGPU and on WebGL2. See [`harness`] for how to write such a test.
+#![cfg(not(target_arch = "wasm32"))]
+
+#[allow(dead_code, reason = "a harness offers more than is used today")]
+mod harness;
+mod opening;
+mod source;
+mod watching;

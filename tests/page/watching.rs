@@ -1,0 +1,29 @@
+//! The harness notices what it promises to notice.
+
+use crate::harness::{Backend, Page, Screen};
+
+#[test]
+#[ignore = "drives the built page in Chromium: run by `cargo xtask test`"]
+fn planted_problems_are_noticed() {
+    let mut page = Page::open(Backend::WebGl2, Screen::Desktop, "");
+    page.wait_until("document.readyState === 'complete'", 10.0);
+    page.evaluate("console.error('planted: an error', 1)");
+    page.evaluate("void setTimeout(() => { throw new Error('planted: thrown') })");
+    page.evaluate("void Promise.reject(new Error('planted: rejected'))");
+    page.evaluate("fetch('http://other.example/planted').catch(() => 0)");
+    page.evaluate("fetch('planted-and-missing').then(() => 0)");
+    page.rest(0.3);
+    let problems = page.problems().join("\n");
+    for planted in [
+        "planted: an error 1",
+        "planted: thrown",
+        "planted: rejected",
+        "asked another host for http://other.example/planted",
+        "planted-and-missing",
+    ] {
+        assert!(problems.contains(planted), "`{planted}` went unnoticed: {problems}");
+    }
+    page.expect_problem("planted");
+    page.expect_problem("other.example");
+    assert_eq!(page.problems(), [""; 0]);
+}
