@@ -12,7 +12,7 @@ use super::field::{Field, STEEPNESS, Value};
 use glam::{DVec3, I64Vec3};
 
 /// Cells along the side of a smallest box.
-const BLOCK: i64 = 4;
+const BLOCK: i64 = 2;
 /// Grid points along the side of a smallest box.
 const POINTS: usize = BLOCK as usize + 1;
 /// Bits of a coordinate in a packed key.

@@ -9,7 +9,7 @@ use glam::DVec3;
 
 /// How fast a field may change at most, per unit of length: tapering and flattened cones are a little steeper than
 /// a true distance.
-pub const STEEPNESS: f64 = 1.6;
+pub const STEEPNESS: f64 = 1.3;
 
 /// Width of the rounding where soles are cut off at the ground.
 const SOLE: f64 = 0.012;
@@ -71,15 +71,29 @@ impl Field {
 
     /// Those of the cones in `among` that matter within `reach` of `centre`, and the value at the centre.
     pub fn narrow(&self, among: &[u32], centre: DVec3, reach: f64) -> (Vec<u32>, f64) {
+        let spread = 2.0 * STEEPNESS * reach;
+        let limb_of = |cone: u32| self.cones[cone as usize].limb as usize;
         let distances: Vec<f64> =
             among.iter().map(|&cone| self.cones[cone as usize].cone.near(centre).distance).collect();
-        let nearest = distances.iter().copied().fold(f64::INFINITY, f64::min);
-        let limit = nearest + 2.0 * STEEPNESS * reach + 1.5 * self.widest;
-        let kept = among.iter().zip(&distances).filter(|&(_, &d)| d <= limit).map(|(&cone, _)| cone).collect();
-        (kept, self.value(among, centre).distance)
+        let mut by_limb = vec![f64::INFINITY; self.limbs.len()];
+        for (&cone, &distance) in among.iter().zip(&distances) {
+            let nearest = &mut by_limb[limb_of(cone)];
+            *nearest = nearest.min(distance);
+        }
+        let nearest = by_limb.iter().copied().fold(f64::INFINITY, f64::min);
+        // Only limbs that come near are blended with; within a limb nothing is blended.
+        let near = by_limb.iter().zip(&self.limbs).filter(|&(&d, _)| d <= nearest + spread + self.widest);
+        let blend = near.map(|(_, limb)| limb.1).fold(0.0, f64::max);
+        let limit = nearest + spread + 1.1 * blend;
+        let matters = |cone: u32, d: f64| d <= limit.min(by_limb[limb_of(cone)] + spread);
+        let mut kept: Vec<(usize, f64, u32)> =
+            among.iter().zip(&distances).filter(|&(&c, &d)| matters(c, d)).map(|(&c, &d)| (limb_of(c), d, c)).collect();
+        // The nearest cone of a limb first: most others are then beyond it at a glance.
+        kept.sort_by(|a, b| a.0.cmp(&b.0).then(a.1.total_cmp(&b.1)).then(a.2.cmp(&b.2)));
+        (kept.into_iter().map(|k| k.2).collect(), self.value(among, centre).distance)
     }
 
-    /// The field at a point, from the given cones (rising numbers).
+    /// The field at a point, from the given cones (limb by limb, as [`Field::narrow`] gives them).
     pub fn value(&self, among: &[u32], p: DVec3) -> Value {
         let far = Value { distance: f64::INFINITY, gradient: DVec3::Y, radius: 1.0 };
         let (mut body, mut pair, mut limb) = (far, far, far);
@@ -97,6 +111,9 @@ impl Field {
                 }
                 limb = far;
                 current = Some(owned.limb);
+            }
+            if owned.cone.is_beyond(p, limb.distance) {
+                continue;
             }
             let near = owned.cone.near(p);
             if near.distance < limb.distance {

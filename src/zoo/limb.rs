@@ -7,7 +7,7 @@
 use glam::DVec3;
 
 /// Cones between two stations.
-const CUTS: usize = 5;
+const CUTS: usize = 4;
 
 /// The thickness of a limb at one place.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -36,6 +36,8 @@ pub struct Cone {
     /// Arc length from the start of the limb at both ends.
     arc: [f64; 2],
     direction: DVec3,
+    centre: DVec3,
+    reach: f64,
 }
 
 /// Where a point lies with respect to a cone or a limb.
@@ -52,6 +54,7 @@ pub struct Near {
 }
 
 impl Cone {
+    #[inline]
     /// Signed distance, its gradient and where on the centre line.
     pub fn near(&self, p: DVec3) -> Near {
         let from = p - self.from;
@@ -75,8 +78,14 @@ impl Cone {
 
     /// A ball that holds the cone: centre and radius.
     pub fn ball(&self) -> (DVec3, f64) {
-        let radius = |end: usize| self.radius[end] * self.flat[end].max(1.0);
-        (self.from + 0.5 * self.along, 0.5 * self.along.length() + radius(0).max(radius(1)))
+        (self.centre, self.reach)
+    }
+
+    #[inline]
+    /// Whether a point is certainly farther away than `distance`, found without a square root.
+    pub fn is_beyond(&self, p: DVec3, distance: f64) -> bool {
+        let limit = distance + self.reach;
+        limit < 0.0 || p.distance_squared(self.centre) > limit * limit
     }
 }
 
@@ -117,7 +126,13 @@ impl Limb {
 
     /// Where a point lies with respect to the whole limb.
     pub fn near(&self, p: DVec3) -> Option<Near> {
-        self.cones.iter().map(|cone| cone.near(p)).min_by(|a, b| a.distance.total_cmp(&b.distance))
+        self.cones.iter().fold(None, |best: Option<Near>, cone| match best {
+            Some(best) if cone.is_beyond(p, best.distance) => Some(best),
+            best => {
+                let near = cone.near(p);
+                best.filter(|best| best.distance <= near.distance).or(Some(near))
+            }
+        })
     }
 
     /// Arc length of the place on the centre line nearest to a point, and the radius there.
@@ -156,6 +171,8 @@ fn cut(stations: &[Station], direction: DVec3) -> Vec<Cone> {
                 flat: [a.flat, b.flat],
                 arc: [arc, arc + length],
                 direction,
+                centre: a.at + 0.5 * along,
+                reach: 0.5 * length + (a.radius * a.flat.max(1.0)).max(b.radius * b.flat.max(1.0)),
             });
             arc += length;
         }

@@ -1,20 +1,23 @@
 //! Creatures made by code, each with its true parts.
 //!
-//! A creature's own file ([`horse`], camel, person, snake) describes its bones, the limbs around them
+//! A creature's own file ([`horse`], [`camel`], [`person`], [`snake`]) describes its bones, the limbs around them
 //! and how it moves. The rest is common: [`limb`]s are joined to a [`field`], the [`mesher`] makes a closed mesh of
 //! it, [`weights`] tie the mesh to the bones of the [`skeleton`], and [`gait`]s move them.
 //!
 //! Creatures stand on the ground y = 0, y is up, and they face +z; their left is +x. Lengths are about metres.
 
 pub mod body;
+pub mod camel;
 pub mod extract;
 pub mod field;
 pub mod gait;
 pub mod horse;
 pub mod limb;
 pub mod mesher;
+pub mod person;
 pub mod quadruped;
 pub mod skeleton;
+pub mod snake;
 pub mod surface;
 pub mod weights;
 
@@ -67,7 +70,7 @@ impl Default for Recipe {
 }
 
 /// The creatures there are.
-pub const NAMES: &[&str] = &["horse"];
+pub const NAMES: &[&str] = &["horse", "camel", "person", "person-arms-out", "snake"];
 
 /// Makes a creature; `None` if there is none of that name.
 ///
@@ -75,6 +78,10 @@ pub const NAMES: &[&str] = &["horse"];
 pub fn make(recipe: &Recipe) -> Option<Creature> {
     let (plan, body) = match recipe.name.as_str() {
         "horse" => ("quadruped", horse::horse()),
+        "camel" => ("quadruped", camel::camel()),
+        "person" => ("biped", person::person()),
+        "person-arms-out" => ("biped", person::person_arms_out()),
+        "snake" => ("snake", snake::snake()),
         _ => return None,
     };
     build(recipe, plan, &body)

@@ -1,0 +1,224 @@
+//! The person: 1.75 tall, facing +z, in two reference poses with the same walk.
+//!
+//! The body is meshed with its arms half raised, where neither shoulder nor armpit is stretched; the reference pose
+//! then lowers the arms or raises them. Both variants are one mesh, vertex by vertex, so the true answer of every
+//! transfer between them is known.
+
+use super::body::{Body, Motion, Turns};
+use super::gait::{Curve, Leg, Step, pitch, roll, wave, yaw};
+use super::limb::{Station, station};
+use super::skeleton::{Rigid, Skeleton};
+use glam::{DQuat, DVec3};
+
+/// How far the arms hang below the horizontal in the mesh, in degrees.
+const MESHED: f64 = 45.0;
+/// The same with the arms down and with the arms out.
+const DOWN: f64 = 80.0;
+const OUT: f64 = 4.0;
+
+/// The left shoulder, and how far along the arm elbow, wrist and fingertips are.
+const SHOULDER: [f64; 3] = [0.185, 1.425, -0.015];
+const ELBOW: f64 = 0.285;
+const WRIST: f64 = 0.535;
+const FINGERTIPS: f64 = 0.72;
+
+/// Hip, knee, ankle and toes, left side.
+const LEG: [[f64; 3]; 4] = [[0.095, 0.93, 0.0], [0.098, 0.50, 0.012], [0.095, 0.085, -0.030], [0.105, 0.02, 0.17]];
+
+const LEG_STATIONS: &[Station] = &[
+    station(0.085, 0.95, -0.005, 0.108, 0.92),
+    station(0.094, 0.84, 0.000, 0.097, 0.90),
+    station(0.097, 0.68, 0.008, 0.078, 0.92),
+    station(0.098, 0.55, 0.014, 0.061, 0.95),
+    station(0.098, 0.49, 0.012, 0.058, 0.97),
+    station(0.099, 0.40, -0.008, 0.060, 0.95),
+    station(0.099, 0.32, -0.015, 0.057, 0.93),
+    station(0.097, 0.20, -0.020, 0.043, 0.93),
+    station(0.095, 0.10, -0.026, 0.038, 0.95),
+    station(0.095, 0.045, -0.030, 0.040, 0.95),
+];
+
+/// The person with the arms down.
+pub fn person() -> Body {
+    build(|skeleton| stance(skeleton, DOWN))
+}
+
+/// The same with the arms out.
+pub fn person_arms_out() -> Body {
+    build(|skeleton| stance(skeleton, OUT))
+}
+
+/// A point so far along the left arm as it is meshed, with an offset forwards.
+fn arm(along: f64, forward: f64) -> [f64; 3] {
+    let (sine, cosine) = MESHED.to_radians().sin_cos();
+    [SHOULDER[0] + along * cosine, SHOULDER[1] - along * sine, SHOULDER[2] + forward]
+}
+
+fn build(stance: fn(&Skeleton) -> Vec<Rigid>) -> Body {
+    let mut body = Body::new(0.026, Motion { period: 1.1, stance, gait });
+    body.bone("pelvis", None, [0.0, 0.96, 0.0], [0.0, 1.08, 0.0]);
+    body.bone("chest", Some("pelvis"), [0.0, 1.09, 0.0], [0.0, 1.44, -0.01]);
+    body.bone("head", Some("chest"), [0.0, 1.48, -0.012], [0.0, 1.75, 0.02]);
+    body.bones("* upper arm", "chest", SHOULDER, arm(ELBOW, 0.0));
+    body.bones("* forearm", "* upper arm", arm(ELBOW, 0.0), arm(WRIST, 0.012));
+    body.bones("* hand", "* forearm", arm(WRIST, 0.012), arm(FINGERTIPS, 0.02));
+    body.bones("* thigh", "pelvis", LEG[0], LEG[1]);
+    body.bones("* shank", "* thigh", LEG[1], LEG[2]);
+    body.bones("* foot", "* shank", LEG[2], LEG[3]);
+    body.limb(
+        &["pelvis", "chest"],
+        0.05,
+        &[
+            station(0.0, 0.90, -0.005, 0.085, 1.55),
+            station(0.0, 0.99, -0.005, 0.112, 1.42),
+            station(0.0, 1.10, 0.004, 0.100, 1.36),
+            station(0.0, 1.21, 0.006, 0.106, 1.42),
+            station(0.0, 1.32, 0.000, 0.115, 1.44),
+            station(0.0, 1.405, -0.012, 0.085, 1.62),
+            station(0.0, 1.44, -0.016, 0.055, 1.7),
+        ],
+    );
+    // Shoulders slope from the neck.
+    body.limbs(
+        &["chest"],
+        0.07,
+        &[station(0.05, 1.455, -0.018, 0.058, 1.0), station(0.150, 1.425, -0.015, 0.062, 1.0)],
+    );
+    body.limbs(&["* thigh", "* shank"], 0.045, LEG_STATIONS);
+    body.limbs(
+        &["* foot"],
+        0.04,
+        &[
+            station(0.096, 0.040, -0.055, 0.040, 0.95),
+            station(0.098, 0.048, 0.010, 0.044, 0.95),
+            station(0.103, 0.030, 0.085, 0.038, 1.20),
+            station(0.107, 0.016, 0.150, 0.028, 1.50),
+            station(0.108, 0.012, 0.172, 0.022, 1.5),
+        ],
+    );
+    arms(&mut body);
+    body.limb(
+        &["chest", "head"],
+        0.05,
+        &[
+            station(0.0, 1.42, -0.02, 0.058, 1.0),
+            station(0.0, 1.50, -0.012, 0.053, 1.0),
+            station(0.0, 1.58, 0.0, 0.056, 1.0),
+        ],
+    );
+    head(&mut body);
+    body
+}
+
+fn arms(body: &mut Body) {
+    let at = |along: f64, forward: f64, radius: f64, flat: f64| {
+        let [x, y, z] = arm(along, forward);
+        station(x, y, z, radius, flat)
+    };
+    body.limbs(
+        &["* upper arm", "* forearm", "* hand"],
+        0.055,
+        &[
+            at(-0.01, 0.0, 0.066, 1.0),
+            at(0.06, 0.0, 0.062, 1.0),
+            at(0.17, 0.0, 0.050, 1.0),
+            at(0.285, 0.0, 0.042, 1.0),
+            at(0.36, 0.002, 0.043, 1.0),
+            at(0.46, 0.008, 0.034, 1.0),
+            at(0.535, 0.012, 0.027, 1.0),
+        ],
+    );
+    // A mitten of a hand, flat towards the body, with a thumb.
+    let flat = DVec3::new(1.0, 1.0, 0.0);
+    body.limbs_facing(
+        &["* hand"],
+        0.03,
+        flat,
+        &[
+            at(0.535, 0.012, 0.030, 0.80),
+            at(0.585, 0.016, 0.044, 0.55),
+            at(0.635, 0.018, 0.045, 0.48),
+            at(0.685, 0.018, 0.036, 0.48),
+            at(0.715, 0.016, 0.026, 0.5),
+        ],
+    );
+    body.limbs(
+        &["* hand"],
+        0.025,
+        &[at(0.56, 0.040, 0.018, 1.0), at(0.605, 0.068, 0.017, 1.0), at(0.64, 0.076, 0.014, 1.0)],
+    );
+}
+
+fn head(body: &mut Body) {
+    // Skull, face with chin, nose, ears, a cap of hair.
+    body.limb(&["head"], 0.04, &[station(0.0, 1.635, -0.010, 0.098, 0.84), station(0.0, 1.665, 0.000, 0.100, 0.82)]);
+    body.limb(
+        &["head"],
+        0.05,
+        &[
+            station(0.0, 1.640, 0.035, 0.072, 0.88),
+            station(0.0, 1.585, 0.050, 0.055, 0.90),
+            station(0.0, 1.555, 0.062, 0.034, 1.0),
+        ],
+    );
+    body.limb(&["head"], 0.025, &[station(0.0, 1.650, 0.100, 0.013, 0.9), station(0.0, 1.618, 0.116, 0.018, 0.9)]);
+    body.limbs(&["head"], 0.02, &[station(0.080, 1.655, 0.0, 0.024, 0.5), station(0.079, 1.615, 0.005, 0.018, 0.5)]);
+}
+
+/// Turns the arms of the meshed pose to hang so many degrees below the horizontal.
+fn lower_arms(turns: &mut Turns, degrees: f64) {
+    turns.set("left upper arm", roll(MESHED - degrees));
+    turns.set("right upper arm", roll(degrees - MESHED));
+}
+
+fn stance(skeleton: &Skeleton, degrees: f64) -> Vec<Rigid> {
+    let mut turns = Turns::new(skeleton);
+    lower_arms(&mut turns, degrees);
+    turns.pose(DVec3::ZERO)
+}
+
+const STEP: Step = Step {
+    duty: 0.60,
+    stride: 0.62,
+    ahead: 0.02,
+    lift: 0.06,
+    bend: Curve(&[]),
+    foot: Curve(&[
+        (0.0, -20.0),
+        (0.10, 0.0),
+        (0.36, 0.0),
+        (0.50, 20.0),
+        (0.60, 46.0),
+        (0.70, 50.0),
+        (0.86, 0.0),
+        (0.95, -18.0),
+    ]),
+};
+
+fn gait(skeleton: &Skeleton, phase: f64) -> Vec<Rigid> {
+    let mut turns = Turns::new(skeleton);
+    let stride = wave(phase + 0.25);
+    // The left foot meets the ground at phase 0: the pelvis turns left forwards, the chest against it.
+    let shift = DVec3::new(0.018 * wave(phase + 0.02), -0.035 - 0.014 * wave(2.0 * phase + 0.20), 0.0);
+    turns.set("pelvis", yaw(-6.0 * stride) * roll(2.5 * wave(phase)));
+    turns.set("chest", yaw(13.0 * stride) * roll(-3.0 * wave(phase)) * pitch(2.5));
+    turns.set("head", yaw(-7.0 * stride) * pitch(-2.0 + 3.0 * wave(2.0 * phase + 0.1)));
+    for (side, sign) in [("left", 1.0), ("right", -1.0)] {
+        let swing = sign * stride;
+        let hang = roll(sign * (MESHED - DOWN));
+        // The arm swings against the leg of its side; the elbow bends as it comes forward.
+        turns.set(&format!("{side} upper arm"), pitch(4.0 + 26.0 * swing) * hang);
+        let bend = -22.0 + 16.0 * wave(phase + 0.20 + if sign > 0.0 { 0.0 } else { 0.5 });
+        turns.set(&format!("{side} forearm"), hang.inverse() * pitch(bend) * hang);
+        let wrist = 9.0 * wave(phase + 0.10 + if sign > 0.0 { 0.0 } else { 0.5 });
+        turns.set(&format!("{side} hand"), hang.inverse() * pitch(wrist - 4.0) * hang);
+        let bone = |name: &str| skeleton.find(&format!("{side} {name}"));
+        if let (Some(upper), Some(lower), Some(foot)) = (bone("thigh"), bone("shank"), bone("foot")) {
+            let leg = Leg { upper, lower, middle: None, foot, sole: [-0.085, 0.165] };
+            let landing = if sign > 0.0 { 0.0 } else { 0.5 };
+            STEP.place(&leg, phase - landing, skeleton, shift, &mut turns.turns);
+        }
+    }
+    debug_assert!(turns.turns.iter().all(|t: &DQuat| t.is_finite()));
+    turns.pose(shift)
+}
