@@ -179,3 +179,8 @@ fn kind(file: &File) -> Option<Kind> {
 fn is_hidden(name: &str) -> bool {
     name.split(['/', '\\']).any(|part| (part.starts_with('.') && part != "." && part != "..") || part == "__MACOSX")
 }
+
+/// `1 face was`, `2 faces were`.
+fn counted(count: usize, one: &str, many: &str) -> String {
+    format!("{count} {}", if count == 1 { one } else { many })
+}

@@ -2,7 +2,7 @@
 
 use super::limits::Budget;
 use super::polygons::PolygonMesh;
-use super::{File, ImportError, Imported, obj, off, ply};
+use super::{File, ImportError, Imported, counted, obj, off, ply};
 use crate::sequence::{Pose, Sequence};
 use crate::warning::Warning;
 
@@ -50,7 +50,7 @@ pub fn open(files: &[(&File, Format)]) -> Result<Imported, ImportError> {
             format!(
                 "The faces of {} (such as {example}) name other vertices than those of {name}; the faces of {name} \
                  were taken, which is right only if the vertices are the same ones in the same order.",
-                counted(different.len(), "file")
+                counted(different.len(), "file", "files")
             ),
         ));
     }
@@ -102,7 +102,7 @@ fn check_pose(name: &str, reference: &PolygonMesh, pose_name: &str, pose: &Polyg
 fn note_polygons(mesh: &PolygonMesh, polygons: &[u32], warnings: &mut Vec<Warning>) {
     let thin = (0..mesh.len()).filter(|&p| mesh.polygon(p).len() < 3).count();
     if thin > 0 {
-        let what = format!("{} of fewer than three corners were left out.", counted(thin, "face"));
+        let what = format!("{} left out for want of a third corner.", counted(thin, "face was", "faces were"));
         warnings.push(Warning::new("thin-faces", what));
     }
     let repeats = |polygon: &[u32]| {
@@ -114,15 +114,11 @@ fn note_polygons(mesh: &PolygonMesh, polygons: &[u32], warnings: &mut Vec<Warnin
     let faces: Vec<u32> = (0..polygons.len()).filter(of_polygon).map(|f| f as u32).collect();
     if !faces.is_empty() {
         let what = format!(
-            "{} that name a vertex twice were kept, so that faces keep their numbers.",
-            counted(faces.len(), "face")
+            "{} a vertex twice; they were kept, so that faces keep their numbers.",
+            counted(faces.len(), "triangle names", "triangles name")
         );
         warnings.push(Warning::on_faces("collapsed-faces", what, faces));
     }
-}
-
-fn counted(count: usize, what: &str) -> String {
-    format!("{count} {what}{}", if count == 1 { "" } else { "s" })
 }
 
 /// What to call the sequence: its file, or the folder of its files.

@@ -65,6 +65,10 @@ pub fn read(name: &str, bytes: &[u8]) -> Result<PolygonMesh, ImportError> {
 }
 
 fn check_header(lines: &Lines, word: &[u8]) -> Result<(), ImportError> {
+    // Only the capital N means normals; a small one means another number of dimensions.
+    if word.starts_with(b"n") {
+        return Err(lines.wrong(format!("{} is a kind of OFF that is not read", shown(word))));
+    }
     let upper = word.to_ascii_uppercase();
     let prefix = upper
         .strip_suffix(b"OFF")
@@ -112,7 +116,9 @@ mod tests {
             ("", "no counts"),
             ("PLY\n1 1 1", "begins with OFF"),
             ("4OFF\n1 1 1", "not a whole number"),
-            ("nOFF 4\n1 1 1", "does not fit"),
+            ("4nOFF\n1 1 1", "not a whole number"),
+            ("HOFF\n1 1 1", "not read"),
+            ("nOFF 4\n1 1 1", "not read"),
             ("OFF BINARY\n", "binary OFF"),
             ("OFF\n4000000000 1 0\n", "4000000000"),
             ("OFF\n-3 1 0\n", "-3"),

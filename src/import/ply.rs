@@ -328,8 +328,9 @@ mod tests {
         let little = binary(false);
         for (bytes, part) in [
             (b"".to_vec(), "begins with"),
-            (little[..40].to_vec(), "no end_header"),
-            (little[..little.len() - 1].to_vec(), "cut short"),
+            (little[..36].to_vec(), "no end_header"),
+            (little[..little.len() - 1].to_vec(), "list of 3 entries"),
+            (TEXT[..TEXT.len() - 6].into(), "cut short"),
             (TEXT.replace("vertex 4", "vertex 4000000000").into_bytes(), "announces 4000000000"),
             (TEXT.replace("9 0 0 1", "9 0 nan 1").into_bytes(), "vertex 2 of a.ply"),
             (TEXT.replace("3 0 1 2", "3 0 -1 2").into_bytes(), "names vertex -1"),

@@ -3,7 +3,7 @@
 use super::accessor::Accessor;
 use super::buffers::Buffers;
 use super::document::Document;
-use super::nodes::{Local, unit};
+use super::nodes::{Local, rotation, slerp};
 use crate::import::ImportError;
 use crate::import::limits::Budget;
 use crate::warning::Warning;
@@ -80,7 +80,7 @@ impl Motion {
             match (channel.property, value.as_slice()) {
                 (Property::Translation, &[x, y, z]) => trs.translation = DVec3::new(x, y, z),
                 (Property::Scale, &[x, y, z]) => trs.scale = DVec3::new(x, y, z),
-                (Property::Rotation, &[x, y, z, w]) => trs.rotation = unit(DQuat::from_xyzw(x, y, z, w)),
+                (Property::Rotation, &[x, y, z, w]) => trs.rotation = rotation(DQuat::from_xyzw(x, y, z, w)),
                 _ => continue,
             }
             locals[channel.node] = Local::Trs(trs);
@@ -178,8 +178,8 @@ impl Channel {
     fn linear(&self, key: usize, s: f64) -> Vec<f64> {
         let (from, to) = (self.key(key), self.key(key + 1));
         if self.property == Property::Rotation {
-            let quaternion = |v: &[f64]| unit(DQuat::from_xyzw(v[0], v[1], v[2], v[3]));
-            return quaternion(&from).slerp(quaternion(&to), s).to_array().to_vec();
+            let quaternion = |v: &[f64]| rotation(DQuat::from_xyzw(v[0], v[1], v[2], v[3]));
+            return slerp(quaternion(&from), quaternion(&to), s).to_array().to_vec();
         }
         from.iter().zip(&to).map(|(a, b)| a + s * (b - a)).collect()
     }

@@ -44,18 +44,52 @@ impl Local {
             Self::Matrix(matrix) => {
                 let (scale, rotation, translation) = matrix.to_scale_rotation_translation();
                 let whole = scale.is_finite() && rotation.is_finite() && scale.min_element() != 0.0;
-                let rotation = if whole { unit(rotation) } else { DQuat::IDENTITY };
+                let rotation = if whole { self::rotation(rotation) } else { DQuat::IDENTITY };
                 Trs { translation, rotation, scale: if scale.is_finite() { scale } else { DVec3::ONE } }
             }
         }
     }
 }
 
+/// A quaternion that stands for a rotation: as it is where it has unit length but for rounding, else brought to
+/// unit length; the identity for one without a direction.
+///
+/// Files written by hand round to three digits (0.707, 0.707). Viewers take these as they are; so does Sinew, that
+/// it shows what they show.
+pub fn rotation(q: DQuat) -> DQuat {
+    let length = q.length();
+    if (length - 1.0).abs() < ROUNDED {
+        return q;
+    }
+    unit(q)
+}
+
 /// A quaternion at unit length; the identity for one without a direction.
-pub fn unit(q: DQuat) -> DQuat {
+fn unit(q: DQuat) -> DQuat {
     let length = q.length();
     if length > 1e-12 && length.is_finite() { q / length } else { DQuat::IDENTITY }
 }
+
+/// How far from unit length rounding to three digits takes a quaternion.
+const ROUNDED: f64 = 1e-3;
+
+/// Shoemake, *Animating rotation with quaternion curves* (1985), the short way round.
+pub fn slerp(from: DQuat, to: DQuat, s: f64) -> DQuat {
+    if from == to {
+        return from;
+    }
+    let dot = from.dot(to);
+    let (to, dot) = if dot < 0.0 { (-to, -dot) } else { (to, dot) };
+    if dot > NEARLY_ONE {
+        return unit(from * (1.0 - s) + to * s);
+    }
+    let angle = dot.acos();
+    let sine = angle.sin();
+    rotation(from * (((1.0 - s) * angle).sin() / sine) + to * ((s * angle).sin() / sine))
+}
+
+/// Cosine below which slerp is well-conditioned; above it the chord is as good as the arc.
+const NEARLY_ONE: f64 = 0.9995;
 
 /// The nodes of a file.
 #[derive(Clone, Debug)]
@@ -205,7 +239,7 @@ fn local(document: &Document, node: usize) -> Result<Local, ImportError> {
             let [x, y, z, w] = entry.rotation.map_or([0.0, 0.0, 0.0, 1.0], |r| r.0).map(f64::from);
             Local::Trs(Trs {
                 translation: entry.translation.map_or(DVec3::ZERO, vector),
-                rotation: unit(DQuat::from_xyzw(x, y, z, w)),
+                rotation: rotation(DQuat::from_xyzw(x, y, z, w)),
                 scale: entry.scale.map_or(DVec3::ONE, vector),
             })
         }

@@ -2,7 +2,7 @@
 
 use super::clip::Motion;
 use super::model::Model;
-use crate::import::{File, ImportError, Imported, Options, Reference, Sampling};
+use crate::import::{File, ImportError, Imported, Options, Reference, Sampling, counted};
 use crate::mesh::weld::{compact, weld};
 use crate::sequence::{Pose, Sequence};
 use crate::warning::Warning;
@@ -161,7 +161,8 @@ fn weld_seams(faces: &mut [[u32; 3]], reference: &mut Vec<DVec3>, poses: &mut [P
     warnings.push(Warning::new(
         "welded",
         format!(
-            "{gone} vertices that agree with another in every pose (seams of texture and normals) were joined to it."
+            "{} joined to another that is in the same place in every pose (seams of texture and normals).",
+            counted(gone, "vertex was", "vertices were")
         ),
     ));
 }
@@ -171,7 +172,10 @@ fn drop_collapsed(faces: &mut Vec<[u32; 3]>, warnings: &mut Vec<Warning>) {
     faces.retain(|[a, b, c]| a != b && b != c && c != a);
     let gone = before - faces.len();
     if gone > 0 {
-        warnings.push(Warning::new("collapsed-faces", format!("{gone} faces that name a vertex twice were left out.")));
+        warnings.push(Warning::new(
+            "collapsed-faces",
+            format!("{} left out because two corners are one point.", counted(gone, "face was", "faces were")),
+        ));
     }
 }
 
