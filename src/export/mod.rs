@@ -1,1 +1,3 @@
 //! From results to files: GLB, OBJ, reports.
+
+pub mod glb;

@@ -1,1 +1,6 @@
-//! Small numerical tools: 3×3 decompositions, rigid fits, sparse solves.
+//! Small numerical tools: polar decomposition, rigid fits, sparse solves.
+
+pub mod conjugate_gradient;
+pub mod jacobi;
+pub mod polar;
+pub mod rigid_fit;

@@ -1,4 +1,9 @@
 //! What the algorithms need to know of a triangle mesh: adjacency, pieces, areas, welding.
 
+pub mod dual;
+pub mod face;
+pub mod near;
 pub mod pieces;
 pub mod weld;
+
+pub use dual::{DualEdge, DualGraph};

@@ -15,6 +15,8 @@ pub struct Body {
     pub grounded: bool,
     /// Thickness of its thinnest limbs.
     pub thinnest: f64,
+    /// Half the length of the stretch around a joint in which two bones share the skin, in radii of the limb.
+    pub softness: f64,
     /// How it moves.
     pub motion: Motion,
 }
@@ -33,7 +35,7 @@ pub struct Motion {
 impl Body {
     /// A body without bones.
     pub fn new(thinnest: f64, motion: Motion) -> Self {
-        Self { skeleton: Skeleton::default(), limbs: Vec::new(), grounded: true, thinnest, motion }
+        Self { skeleton: Skeleton::default(), limbs: Vec::new(), grounded: true, thinnest, softness: 0.9, motion }
     }
 
     /// Adds a bone from `joint` to `end`; `parent` is the name of the bone that carries it.

@@ -49,7 +49,7 @@ const HIND: &[Station] = &[
 
 /// The horse's bones, limbs and motion.
 pub fn horse() -> Body {
-    let mut body = Body::new(0.032, Motion { period: 1.15, stance: as_meshed, gait });
+    let mut body = Body::new(0.030, Motion { period: 1.15, stance: as_meshed, gait });
     quadruped_bones(&mut body, &JOINTS);
     body.limb(
         &["trunk"],
@@ -143,7 +143,7 @@ fn head(body: &mut Body) {
             station(0.045, 1.965, 1.055, 0.030, 0.75),
             station(0.055, 2.035, 1.065, 0.036, 0.62),
             station(0.062, 2.095, 1.08, 0.030, 0.60),
-            station(0.062, 2.150, 1.10, 0.013, 0.80),
+            station(0.062, 2.145, 1.10, 0.017, 0.80),
         ],
     );
 }
@@ -185,9 +185,9 @@ const WALK: Walk = Walk {
         duty: 0.62,
         stride: 0.56,
         ahead: 0.02,
-        lift: 0.09,
-        bend: Curve(&[(0.0, 0.0), (0.15, -5.0), (0.5, 6.0), (0.62, -4.0), (0.78, -40.0), (0.94, -6.0)]),
-        foot: Curve(&[(0.0, -4.0), (0.06, 0.0), (0.46, 0.0), (0.62, 30.0), (0.72, 58.0), (0.88, 14.0), (0.96, -6.0)]),
+        lift: 0.075,
+        bend: Curve(&[(0.0, 0.0), (0.15, -5.0), (0.5, 6.0), (0.62, -4.0), (0.78, -22.0), (0.94, -5.0)]),
+        foot: Curve(&[(0.0, -4.0), (0.06, 0.0), (0.46, 0.0), (0.62, 28.0), (0.72, 46.0), (0.88, 10.0), (0.96, -6.0)]),
     },
     drop: 0.022,
     nod: 1.0,

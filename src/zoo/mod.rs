@@ -8,6 +8,7 @@
 
 pub mod body;
 pub mod camel;
+pub mod correspondence;
 pub mod extract;
 pub mod field;
 pub mod gait;
@@ -22,6 +23,8 @@ pub mod surface;
 pub mod weights;
 
 use crate::sequence::{Pose, Sequence};
+pub use correspondence::correspondences;
+
 use body::Body;
 use glam::DVec3;
 use skeleton::{Rigid, Skeleton};
@@ -42,7 +45,7 @@ pub struct Creature {
     pub skeleton: Skeleton,
     /// #V: the bones that each vertex follows.
     pub weights: Vec<Weights>,
-    /// The body plan: between creatures of one plan there are true correspondences.
+    /// The body plan: between creatures of one plan there are true [`correspondences`].
     pub plan: &'static str,
     /// #V positions in which the mesh was made and the skeleton is given; the reference pose itself, except for
     /// creatures that were made in another pose than they stand in.
@@ -92,7 +95,7 @@ fn build(recipe: &Recipe, plan: &'static str, body: &Body) -> Option<Creature> {
     let poses = recipe.poses.clamp(1, 240);
     let field = field::Field::new(&body.limbs, body.grounded);
     let (made, faces) = mesher::mesh(&field, faces, body.thinnest)?;
-    let binder = Binder::new(&body.limbs, &body.skeleton);
+    let binder = Binder::new(&body.limbs, &body.skeleton, body.softness);
     let weights: Vec<Weights> =
         made.iter().map(|&p| if recipe.exact { vec![(binder.exact(p), 1.0)] } else { binder.smooth(p) }).collect();
     let labels = faces.iter().map(|corners| label(corners.map(|v| &weights[v as usize]))).collect();
@@ -143,3 +146,6 @@ fn label(corners: [&Weights; 3]) -> u32 {
     }
     sums.into_iter().reduce(|best, next| if next.1 > best.1 { next } else { best }).map_or(0, |best| best.0)
 }
+
+#[cfg(test)]
+mod tests;

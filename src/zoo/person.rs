@@ -17,7 +17,7 @@ const DOWN: f64 = 80.0;
 const OUT: f64 = 4.0;
 
 /// The left shoulder, and how far along the arm elbow, wrist and fingertips are.
-const SHOULDER: [f64; 3] = [0.185, 1.425, -0.015];
+const SHOULDER: [f64; 3] = [0.178, 1.405, -0.015];
 const ELBOW: f64 = 0.285;
 const WRIST: f64 = 0.535;
 const FINGERTIPS: f64 = 0.72;
@@ -55,7 +55,7 @@ fn arm(along: f64, forward: f64) -> [f64; 3] {
 }
 
 fn build(stance: fn(&Skeleton) -> Vec<Rigid>) -> Body {
-    let mut body = Body::new(0.026, Motion { period: 1.1, stance, gait });
+    let mut body = Body::new(0.022, Motion { period: 1.1, stance, gait });
     body.bone("pelvis", None, [0.0, 0.96, 0.0], [0.0, 1.08, 0.0]);
     body.bone("chest", Some("pelvis"), [0.0, 1.09, 0.0], [0.0, 1.44, -0.01]);
     body.bone("head", Some("chest"), [0.0, 1.48, -0.012], [0.0, 1.75, 0.02]);
@@ -82,9 +82,9 @@ fn build(stance: fn(&Skeleton) -> Vec<Rigid>) -> Body {
     body.limbs(
         &["chest"],
         0.07,
-        &[station(0.05, 1.455, -0.018, 0.058, 1.0), station(0.150, 1.425, -0.015, 0.062, 1.0)],
+        &[station(0.03, 1.462, -0.018, 0.056, 1.0), station(0.145, 1.408, -0.015, 0.058, 1.0)],
     );
-    body.limbs(&["* thigh", "* shank"], 0.045, LEG_STATIONS);
+    body.limbs(&["* thigh", "* shank"], 0.075, LEG_STATIONS);
     body.limbs(
         &["* foot"],
         0.04,
@@ -119,9 +119,9 @@ fn arms(body: &mut Body) {
         &["* upper arm", "* forearm", "* hand"],
         0.055,
         &[
-            at(-0.01, 0.0, 0.066, 1.0),
-            at(0.06, 0.0, 0.062, 1.0),
-            at(0.17, 0.0, 0.050, 1.0),
+            at(-0.01, 0.0, 0.057, 1.0),
+            at(0.06, 0.0, 0.056, 1.0),
+            at(0.17, 0.0, 0.048, 1.0),
             at(0.285, 0.0, 0.042, 1.0),
             at(0.36, 0.002, 0.043, 1.0),
             at(0.46, 0.008, 0.034, 1.0),
@@ -136,33 +136,41 @@ fn arms(body: &mut Body) {
         flat,
         &[
             at(0.535, 0.012, 0.030, 0.80),
-            at(0.585, 0.016, 0.044, 0.55),
-            at(0.635, 0.018, 0.045, 0.48),
-            at(0.685, 0.018, 0.036, 0.48),
-            at(0.715, 0.016, 0.026, 0.5),
+            at(0.585, 0.016, 0.043, 0.62),
+            at(0.635, 0.018, 0.044, 0.56),
+            at(0.680, 0.018, 0.038, 0.60),
+            at(0.705, 0.016, 0.031, 0.68),
         ],
     );
     body.limbs(
         &["* hand"],
         0.025,
-        &[at(0.56, 0.040, 0.018, 1.0), at(0.605, 0.068, 0.017, 1.0), at(0.64, 0.076, 0.014, 1.0)],
+        &[at(0.56, 0.040, 0.018, 1.0), at(0.605, 0.066, 0.019, 1.0), at(0.635, 0.074, 0.017, 1.0)],
     );
 }
 
 fn head(body: &mut Body) {
-    // Skull, face with chin, nose, ears, a cap of hair.
-    body.limb(&["head"], 0.04, &[station(0.0, 1.635, -0.010, 0.098, 0.84), station(0.0, 1.665, 0.000, 0.100, 0.82)]);
+    // Skull, face with chin, a small nose, ears.
     body.limb(
         &["head"],
-        0.05,
+        0.04,
         &[
-            station(0.0, 1.640, 0.035, 0.072, 0.88),
-            station(0.0, 1.585, 0.050, 0.055, 0.90),
-            station(0.0, 1.555, 0.062, 0.034, 1.0),
+            station(0.0, 1.632, -0.018, 0.094, 0.84),
+            station(0.0, 1.662, -0.012, 0.106, 0.82),
+            station(0.0, 1.685, -0.002, 0.094, 0.86),
         ],
     );
-    body.limb(&["head"], 0.025, &[station(0.0, 1.650, 0.100, 0.013, 0.9), station(0.0, 1.618, 0.116, 0.018, 0.9)]);
-    body.limbs(&["head"], 0.02, &[station(0.080, 1.655, 0.0, 0.024, 0.5), station(0.079, 1.615, 0.005, 0.018, 0.5)]);
+    body.limb(
+        &["head"],
+        0.06,
+        &[
+            station(0.0, 1.645, 0.030, 0.074, 0.90),
+            station(0.0, 1.590, 0.042, 0.056, 0.92),
+            station(0.0, 1.556, 0.058, 0.034, 1.05),
+        ],
+    );
+    body.limb(&["head"], 0.03, &[station(0.0, 1.655, 0.092, 0.012, 0.9), station(0.0, 1.628, 0.106, 0.015, 0.9)]);
+    body.limbs(&["head"], 0.02, &[station(0.086, 1.655, -0.01, 0.024, 0.5), station(0.084, 1.618, -0.003, 0.018, 0.5)]);
 }
 
 /// Turns the arms of the meshed pose to hang so many degrees below the horizontal.
@@ -179,7 +187,7 @@ fn stance(skeleton: &Skeleton, degrees: f64) -> Vec<Rigid> {
 
 const STEP: Step = Step {
     duty: 0.60,
-    stride: 0.62,
+    stride: 0.57,
     ahead: 0.02,
     lift: 0.06,
     bend: Curve(&[]),
@@ -199,7 +207,7 @@ fn gait(skeleton: &Skeleton, phase: f64) -> Vec<Rigid> {
     let mut turns = Turns::new(skeleton);
     let stride = wave(phase + 0.25);
     // The left foot meets the ground at phase 0: the pelvis turns left forwards, the chest against it.
-    let shift = DVec3::new(0.018 * wave(phase + 0.02), -0.035 - 0.014 * wave(2.0 * phase + 0.20), 0.0);
+    let shift = DVec3::new(0.018 * wave(phase + 0.02), -0.019 - 0.015 * wave(2.0 * phase + 0.19), 0.0);
     turns.set("pelvis", yaw(-6.0 * stride) * roll(2.5 * wave(phase)));
     turns.set("chest", yaw(13.0 * stride) * roll(-3.0 * wave(phase)) * pitch(2.5));
     turns.set("head", yaw(-7.0 * stride) * pitch(-2.0 + 3.0 * wave(2.0 * phase + 0.1)));

@@ -1,6 +1,6 @@
 //! The snake: 3 long, its head at +z, slithering.
 
-use super::body::{Body, Motion, Turns, as_meshed};
+use super::body::{Body, Motion, Turns};
 use super::gait::yaw;
 use super::limb::{Station, station};
 use super::skeleton::{Rigid, Skeleton};
@@ -25,14 +25,16 @@ const NAMES: [&str; 11] = [
 const NECK: f64 = 1.20;
 const LENGTH: f64 = 0.25;
 /// Half the height of the trunk.
-const HALF: f64 = 0.085;
+const HALF: f64 = 0.065;
 /// Waves along the body, and the largest turn from one bone to the next in degrees.
 const WAVES: f64 = 1.35;
 const BEND: f64 = 27.0;
 
 /// The snake's bones, limbs and motion.
 pub fn snake() -> Body {
-    let mut body = Body::new(0.030, Motion { period: 1.6, stance: as_meshed, gait });
+    let mut body = Body::new(0.024, Motion { period: 1.6, stance, gait });
+    // A body without elbows.
+    body.softness = 1.8;
     body.bone("head", None, [0.0, 0.09, NECK], [0.0, 0.08, 1.52]);
     let mut parent = "head";
     for (i, name) in NAMES.into_iter().enumerate() {
@@ -44,18 +46,18 @@ pub fn snake() -> Body {
     // Belly on the ground: the centre is as high as the body is thick, less what is cut off.
     let round = |z: f64, radius: f64| station(0.0, 0.92 * radius, z, radius, 1.06);
     let stations: Vec<Station> = [
-        (1.26, 0.052),
-        (1.16, 0.054),
-        (1.00, 0.066),
-        (0.75, 0.083),
-        (0.45, 0.097),
-        (0.10, 0.102),
-        (-0.25, 0.100),
-        (-0.60, 0.088),
-        (-0.90, 0.070),
-        (-1.15, 0.050),
-        (-1.35, 0.033),
-        (-1.50, 0.018),
+        (1.26, 0.038),
+        (1.16, 0.040),
+        (1.00, 0.049),
+        (0.75, 0.061),
+        (0.45, 0.072),
+        (0.10, 0.075),
+        (-0.25, 0.074),
+        (-0.60, 0.065),
+        (-0.90, 0.052),
+        (-1.15, 0.037),
+        (-1.35, 0.024),
+        (-1.50, 0.013),
     ]
     .map(|(z, radius)| round(z, radius))
     .to_vec();
@@ -67,36 +69,45 @@ pub fn snake() -> Body {
 fn head(body: &mut Body) {
     body.limb(
         &["head"],
-        0.06,
+        0.05,
         &[
-            station(0.0, 0.070, 1.20, 0.050, 1.15),
-            station(0.0, 0.085, 1.28, 0.068, 1.45),
-            station(0.0, 0.084, 1.37, 0.066, 1.35),
-            station(0.0, 0.074, 1.45, 0.054, 1.20),
-            station(0.0, 0.066, 1.52, 0.040, 1.15),
+            station(0.0, 0.050, 1.20, 0.042, 1.15),
+            station(0.0, 0.058, 1.27, 0.052, 1.45),
+            station(0.0, 0.060, 1.34, 0.052, 1.42),
+            station(0.0, 0.054, 1.42, 0.043, 1.25),
+            station(0.0, 0.047, 1.49, 0.033, 1.18),
+            station(0.0, 0.044, 1.51, 0.028, 1.18),
         ],
     );
     // Brows with eyes, and nostrils.
-    body.limbs(&["head"], 0.025, &[station(0.052, 0.128, 1.36, 0.020, 1.0), station(0.046, 0.120, 1.42, 0.018, 1.0)]);
-    body.limbs(&["head"], 0.02, &[station(0.022, 0.088, 1.535, 0.012, 1.0), station(0.020, 0.084, 1.548, 0.011, 1.0)]);
+    body.limbs(&["head"], 0.025, &[station(0.046, 0.094, 1.35, 0.015, 1.0), station(0.041, 0.087, 1.41, 0.014, 1.0)]);
+    body.limbs(&["head"], 0.02, &[station(0.016, 0.062, 1.515, 0.010, 1.0), station(0.015, 0.058, 1.528, 0.009, 1.0)]);
 }
 
 /// A wave that runs from head to tail; the path of the body stays put while the snake moves along it.
 fn gait(skeleton: &Skeleton, phase: f64) -> Vec<Rigid> {
+    bent(skeleton, phase, 1.0)
+}
+
+/// A gentle bend, as at rest.
+fn stance(skeleton: &Skeleton) -> Vec<Rigid> {
+    bent(skeleton, 0.35, 0.4)
+}
+
+fn bent(skeleton: &Skeleton, phase: f64, amount: f64) -> Vec<Rigid> {
     let mut turns = Turns::new(skeleton);
     let count = NAMES.len() as f64;
     // The heading of bone s (head: 0) is a wave; turns between bones are its differences.
     let heading = |s: f64| {
         let reach = if s < 1.5 { 0.55 + 0.3 * s } else { 1.0 };
-        let amplitude = BEND * reach * count / (TAU * WAVES);
+        let amplitude = amount * BEND * reach * count / (TAU * WAVES);
         amplitude * (TAU * (phase - WAVES * s / count)).sin()
     };
     turns.set("head", yaw(heading(0.0)));
     for (i, name) in NAMES.into_iter().enumerate() {
         turns.set(name, yaw(heading(i as f64 + 1.0) - heading(i as f64)));
     }
-    let motions = turns.pose(DVec3::ZERO);
-    centred(skeleton, &motions)
+    centred(skeleton, &turns.pose(DVec3::ZERO))
 }
 
 /// Shifts a pose sideways and along so that the middle of the body stays in its place.

@@ -9,9 +9,6 @@ use super::limb::Limb;
 use super::skeleton::Skeleton;
 use glam::DVec3;
 
-/// Half the length of the stretch around a joint in which two bones share the skin, in radii of the limb.
-const SOFTNESS: f64 = 0.9;
-
 /// The bones that a vertex follows, with weights that sum to 1, the largest first.
 pub type Weights = Vec<(u32, f64)>;
 
@@ -23,9 +20,10 @@ pub struct Binder<'a> {
 }
 
 impl<'a> Binder<'a> {
-    /// Finds the joints along the limbs.
-    pub fn new(limbs: &'a [Limb], skeleton: &Skeleton) -> Self {
-        let joints = limbs.iter().map(|limb| joints(limb, skeleton)).collect();
+    /// Finds the joints along the limbs. `softness` is half the length of the stretch around a joint in which two
+    /// bones share the skin, in radii of the limb.
+    pub fn new(limbs: &'a [Limb], skeleton: &Skeleton, softness: f64) -> Self {
+        let joints = limbs.iter().map(|limb| joints(limb, skeleton, softness)).collect();
         Self { limbs, joints }
     }
 
@@ -65,7 +63,7 @@ impl<'a> Binder<'a> {
     }
 }
 
-fn joints(limb: &Limb, skeleton: &Skeleton) -> Vec<(f64, f64)> {
+fn joints(limb: &Limb, skeleton: &Skeleton, softness: f64) -> Vec<(f64, f64)> {
     let places: Vec<(f64, f64)> =
         limb.bones.iter().skip(1).map(|&bone| limb.project(skeleton.bones[bone as usize].joint)).collect();
     (0..places.len())
@@ -74,7 +72,7 @@ fn joints(limb: &Limb, skeleton: &Skeleton) -> Vec<(f64, f64)> {
             // Neighbouring joints must not share the same skin.
             let gap = |other: Option<&(f64, f64)>| other.map_or(f64::INFINITY, |o| 0.45 * (o.0 - arc).abs());
             let before = gap(i.checked_sub(1).and_then(|j| places.get(j)));
-            (arc, (SOFTNESS * radius).min(before).min(gap(places.get(i + 1))).max(1e-6))
+            (arc, (softness * radius).min(before).min(gap(places.get(i + 1))).max(1e-6))
         })
         .collect()
 }

@@ -1,0 +1,372 @@
+//! A moving mesh in coloured parts, as one GLB file.
+//!
+//! glTF 2.0 (Khronos Group, ISO/IEC 12113:2022), binary form. Every part is a primitive with its own matte material;
+//! all of them share one set of positions. Every pose is a morph target, and one animation shows them one after
+//! the other at their times. That plays back exactly the positions of the sequence (as 32-bit floats) in any
+//! viewer, whatever made them move.
+
+use crate::sequence::Sequence;
+use glam::{DVec3, Vec3};
+use serde_json::{Value, json};
+
+/// Normals are written for smooth shading unless positions alone take more bytes than this; then viewers shade flat.
+const SMOOTH_LIMIT: usize = 24 << 20;
+/// Seconds between poses whose own times cannot be used.
+const STEP: f32 = 1.0 / 12.0;
+/// Colour of parts that were given none.
+const GREY: [f32; 3] = [0.5; 3];
+
+const FLOAT: u32 = 5126;
+const UNSIGNED_INT: u32 = 5125;
+const ARRAY_BUFFER: u32 = 34962;
+const ELEMENT_ARRAY_BUFFER: u32 = 34963;
+
+/// The sequence as a GLB file with one primitive and one material a part, called "part 1" and so on.
+///
+/// `labels` is #F part numbers (faces without a label count as part 0), `colours` linear RGB by part, 0 to 1. The
+/// animation has a key at the time of every pose; if the last pose leads back to the first, one more key closes
+/// the loop. Coordinates beyond the range of 32-bit floats are brought into it.
+pub fn parts(sequence: &Sequence, labels: &[u32], colours: &[[f32; 3]]) -> Vec<u8> {
+    named_parts(sequence, labels, colours, &[])
+}
+
+/// The same, with the names of the parts as names of their materials.
+pub fn named_parts(sequence: &Sequence, labels: &[u32], colours: &[[f32; 3]], names: &[String]) -> Vec<u8> {
+    let mut file = Writer::default();
+    let mut document = json!({
+        "asset": { "version": "2.0", "generator": "Sinew" },
+        "scene": 0,
+        "scenes": [{ "nodes": [0] }],
+        "nodes": [{ "name": sequence.name() }],
+    });
+    let groups = faces_by_part(sequence.faces(), labels);
+    if !groups.is_empty() {
+        let vertices = Vertices::write(sequence, &mut file);
+        let mut materials = Vec::new();
+        let mut primitives = Vec::new();
+        for (part, faces) in &groups {
+            let indices = file.indices(faces);
+            primitives.push(json!({
+                "attributes": vertices.reference,
+                "indices": indices,
+                "material": materials.len(),
+                "mode": 4,
+            }));
+            if !vertices.targets.is_empty()
+                && let Some(primitive) = primitives.last_mut()
+            {
+                primitive["targets"] = json!(vertices.targets);
+            }
+            materials.push(material(*part, colours, names));
+        }
+        document["nodes"][0]["mesh"] = json!(0);
+        document["meshes"] = json!([{ "name": sequence.name(), "primitives": primitives }]);
+        document["materials"] = json!(materials);
+        if !vertices.targets.is_empty() {
+            document["meshes"][0]["weights"] = json!(vec![0.0; vertices.targets.len()]);
+            document["meshes"][0]["extras"] = json!({ "targetNames": pose_names(sequence) });
+            document["animations"] = json!([animation(sequence, &mut file)]);
+        }
+    }
+    file.finish(document)
+}
+
+/// Faces of each part that has any, by rising part number.
+fn faces_by_part(faces: &[[u32; 3]], labels: &[u32]) -> Vec<(u32, Vec<[u32; 3]>)> {
+    let mut order: Vec<(u32, usize)> = (0..faces.len()).map(|f| (labels.get(f).copied().unwrap_or(0), f)).collect();
+    order.sort_unstable();
+    let chunks = order.chunk_by(|a, b| a.0 == b.0);
+    chunks.map(|chunk| (chunk[0].0, chunk.iter().map(|&(_, f)| faces[f]).collect())).collect()
+}
+
+fn material(part: u32, colours: &[[f32; 3]], names: &[String]) -> Value {
+    let [r, g, b] = colours
+        .get(part as usize)
+        .filter(|colour| colour.iter().all(|c| c.is_finite()))
+        .unwrap_or(&GREY)
+        .map(|c| f64::from(c.clamp(0.0, 1.0)));
+    let name = names.get(part as usize).cloned().unwrap_or_else(|| format!("part {}", u64::from(part) + 1));
+    json!({
+        "name": name,
+        "pbrMetallicRoughness": { "baseColorFactor": [r, g, b, 1.0], "metallicFactor": 0.0, "roughnessFactor": 0.9 },
+    })
+}
+
+fn pose_names(sequence: &Sequence) -> Vec<&str> {
+    sequence.poses().iter().map(|pose| pose.name.as_str()).collect()
+}
+
+/// Accessors that all primitives share.
+struct Vertices {
+    reference: Value,
+    targets: Vec<Value>,
+}
+
+impl Vertices {
+    fn write(sequence: &Sequence, file: &mut Writer) -> Self {
+        let base: Vec<Vec3> = sequence.reference().iter().map(|&p| single(p)).collect();
+        let smooth = 12 * base.len() * (1 + sequence.poses().len()) <= SMOOTH_LIMIT;
+        let base_normals = if smooth { normals(sequence.faces(), sequence.reference()) } else { Vec::new() };
+        let mut reference = json!({ "POSITION": file.vectors(&base) });
+        if smooth {
+            reference["NORMAL"] = json!(file.vectors(&base_normals));
+        }
+        let mut targets = Vec::with_capacity(sequence.poses().len());
+        for pose in sequence.poses() {
+            let moved = pose.positions.iter().zip(&base).map(|(&p, b)| single(p - b.as_dvec3()));
+            let mut target = json!({ "POSITION": file.vectors(&moved.collect::<Vec<_>>()) });
+            if smooth {
+                let turned = normals(sequence.faces(), &pose.positions);
+                let turned: Vec<Vec3> = turned.iter().zip(&base_normals).map(|(n, b)| *n - *b).collect();
+                target["NORMAL"] = json!(file.vectors(&turned));
+            }
+            targets.push(target);
+        }
+        Self { reference, targets }
+    }
+}
+
+/// Area-weighted unit normals; +y where there is none.
+fn normals(faces: &[[u32; 3]], positions: &[DVec3]) -> Vec<Vec3> {
+    let mut sums = vec![DVec3::ZERO; positions.len()];
+    for corners in faces {
+        let [a, b, c] = corners.map(|v| positions[v as usize]);
+        let normal = (b - a).cross(c - a);
+        for &v in corners {
+            sums[v as usize] += normal;
+        }
+    }
+    sums.into_iter().map(|n| n.try_normalize().unwrap_or(DVec3::Y).as_vec3().normalize_or(Vec3::Y)).collect()
+}
+
+fn single(p: DVec3) -> Vec3 {
+    const LIMIT: f64 = f32::MAX as f64;
+    p.clamp(DVec3::splat(-LIMIT), DVec3::splat(LIMIT)).as_vec3()
+}
+
+/// One weight a pose, 1 at its own time.
+fn animation(sequence: &Sequence, file: &mut Writer) -> Value {
+    let poses = sequence.poses().len();
+    let mut times = key_times(sequence);
+    let closing = closes(sequence);
+    if closing {
+        let last = times.last().copied().unwrap_or(0.0);
+        times.push(last + (last - times[0]) / (poses - 1) as f32);
+    }
+    let mut weights = vec![0.0f32; times.len() * poses];
+    for key in 0..times.len() {
+        weights[key * poses + key % poses] = 1.0;
+    }
+    let input = file.scalars(&times, true);
+    let output = file.scalars(&weights, false);
+    json!({
+        "name": sequence.name(),
+        "samplers": [{ "input": input, "output": output, "interpolation": "LINEAR" }],
+        "channels": [{ "sampler": 0, "target": { "node": 0, "path": "weights" } }],
+    })
+}
+
+/// The times of the poses from 0 on, if they rise; else evenly spaced ones.
+fn key_times(sequence: &Sequence) -> Vec<f32> {
+    let first = sequence.poses().first().map_or(0.0, |pose| pose.time);
+    let times: Vec<f32> = sequence.poses().iter().map(|pose| (pose.time - first) as f32).collect();
+    let rise = times.windows(2).all(|pair| pair[0] < pair[1]) && times.iter().all(|t| t.is_finite());
+    if rise { times } else { (0..times.len()).map(|i| i as f32 * STEP).collect() }
+}
+
+/// Whether the step from the last pose to the first is one like the others (and not none).
+fn closes(sequence: &Sequence) -> bool {
+    let poses = sequence.poses();
+    let (Some(first), Some(last)) = (poses.first(), poses.last()) else { return false };
+    if poses.len() < 3 {
+        return false;
+    }
+    let step = |a: &[DVec3], b: &[DVec3]| a.iter().zip(b).map(|(a, b)| a.distance(*b)).sum::<f64>();
+    let longest = poses.windows(2).map(|pair| step(&pair[0].positions, &pair[1].positions)).fold(0.0, f64::max);
+    let back = step(&last.positions, &first.positions);
+    back > 1e-6 * longest && back <= 1.5 * longest
+}
+
+/// Collects binary data with the views and accessors that describe it.
+#[derive(Default)]
+struct Writer {
+    accessors: Vec<Value>,
+    vectors: Vec<u8>,
+    indices: Vec<u8>,
+    scalars: Vec<u8>,
+}
+
+/// The views, in the order of their numbers.
+const VECTORS: usize = 0;
+const INDICES: usize = 1;
+const SCALARS: usize = 2;
+
+impl Writer {
+    fn accessor(&mut self, accessor: Value) -> usize {
+        self.accessors.push(accessor);
+        self.accessors.len() - 1
+    }
+
+    fn vectors(&mut self, values: &[Vec3]) -> usize {
+        let offset = self.vectors.len();
+        let (mut low, mut high) = (Vec3::INFINITY, Vec3::NEG_INFINITY);
+        for value in values {
+            low = low.min(*value);
+            high = high.max(*value);
+            for c in value.to_array() {
+                self.vectors.extend_from_slice(&c.to_le_bytes());
+            }
+        }
+        self.accessor(json!({
+            "bufferView": VECTORS, "byteOffset": offset, "componentType": FLOAT, "count": values.len(), "type": "VEC3",
+            "min": low.as_dvec3().to_array(), "max": high.as_dvec3().to_array(),
+        }))
+    }
+
+    fn indices(&mut self, faces: &[[u32; 3]]) -> usize {
+        let offset = self.indices.len();
+        for corner in faces.iter().flatten() {
+            self.indices.extend_from_slice(&corner.to_le_bytes());
+        }
+        self.accessor(json!({
+            "bufferView": INDICES, "byteOffset": offset, "componentType": UNSIGNED_INT, "count": 3 * faces.len(),
+            "type": "SCALAR",
+        }))
+    }
+
+    /// Values that rise or whose range does not matter.
+    fn scalars(&mut self, values: &[f32], with_range: bool) -> usize {
+        let offset = self.scalars.len();
+        for value in values {
+            self.scalars.extend_from_slice(&value.to_le_bytes());
+        }
+        let mut accessor = json!({
+            "bufferView": SCALARS, "byteOffset": offset, "componentType": FLOAT, "count": values.len(), "type": "SCALAR",
+        });
+        if let (true, Some(first), Some(last)) = (with_range, values.first(), values.last()) {
+            accessor["min"] = json!([f64::from(*first)]);
+            accessor["max"] = json!([f64::from(*last)]);
+        }
+        self.accessor(accessor)
+    }
+
+    /// Puts document and data together: a header and two chunks, each padded to four bytes.
+    fn finish(self, mut document: Value) -> Vec<u8> {
+        let Self { accessors, vectors, indices, scalars } = self;
+        let mut binary = Vec::with_capacity(vectors.len() + indices.len() + scalars.len());
+        let mut views = Vec::new();
+        // All data are 32-bit values, so every view starts at a multiple of four.
+        for (data, more) in [
+            (vectors, json!({ "byteStride": 12, "target": ARRAY_BUFFER })),
+            (indices, json!({ "target": ELEMENT_ARRAY_BUFFER })),
+            (scalars, json!({})),
+        ] {
+            if data.is_empty() {
+                continue;
+            }
+            let mut view = more;
+            view["buffer"] = json!(0);
+            view["byteOffset"] = json!(binary.len());
+            view["byteLength"] = json!(data.len());
+            views.push(view);
+            binary.extend_from_slice(&data);
+        }
+        if !binary.is_empty() {
+            document["accessors"] = json!(accessors);
+            document["bufferViews"] = json!(views);
+            document["buffers"] = json!([{ "byteLength": binary.len() }]);
+        }
+        let mut text = document.to_string().into_bytes();
+        text.resize(text.len().next_multiple_of(4), b' ');
+        let data = if binary.is_empty() { 0 } else { 8 + binary.len() };
+        let mut file = Vec::with_capacity(20 + text.len() + data);
+        let length = |n: usize| u32::try_from(n).unwrap_or(u32::MAX).to_le_bytes();
+        file.extend_from_slice(b"glTF");
+        file.extend_from_slice(&2u32.to_le_bytes());
+        file.extend_from_slice(&length(20 + text.len() + data));
+        file.extend_from_slice(&length(text.len()));
+        file.extend_from_slice(b"JSON");
+        file.extend_from_slice(&text);
+        if !binary.is_empty() {
+            file.extend_from_slice(&length(binary.len()));
+            file.extend_from_slice(b"BIN\0");
+            file.extend_from_slice(&binary);
+        }
+        file
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::sequence::Pose;
+    use crate::zoo::{Recipe, make};
+
+    fn floats(blob: &[u8], accessor: &gltf::Accessor) -> Vec<f32> {
+        let view = accessor.view().unwrap();
+        let start = view.offset() + accessor.offset();
+        let count = accessor.count() * accessor.dimensions().multiplicity();
+        blob[start..start + 4 * count].chunks_exact(4).map(|b| f32::from_le_bytes(b.try_into().unwrap())).collect()
+    }
+
+    #[test]
+    fn plays_back_every_pose() {
+        let creature = make(&Recipe { faces: 1500, poses: 6, ..Recipe::default() }).unwrap();
+        let sequence = &creature.sequence;
+        let colours = vec![[0.25, 0.5, 0.75]; creature.parts.len()];
+        let bytes = named_parts(sequence, &creature.labels, &colours, &creature.parts);
+        let gltf = gltf::Gltf::from_slice(&bytes).unwrap();
+        let blob = gltf.blob.as_deref().unwrap();
+        let mesh = gltf.meshes().next().unwrap();
+        assert_eq!(mesh.primitives().len(), creature.parts.len());
+        let mut faces = 0;
+        for primitive in mesh.primitives() {
+            let name = primitive.material().name().unwrap().to_owned();
+            let part = creature.parts.iter().position(|p| *p == name).unwrap();
+            let indices = primitive.indices().unwrap();
+            assert_eq!(indices.count() / 3, creature.labels.iter().filter(|&&l| l as usize == part).count());
+            faces += indices.count() / 3;
+            let base = floats(blob, &primitive.get(&gltf::Semantic::Positions).unwrap());
+            assert_eq!(primitive.morph_targets().len(), 6);
+            for (target, pose) in primitive.morph_targets().zip(sequence.poses()) {
+                let moved = floats(blob, &target.positions().unwrap());
+                for (v, p) in pose.positions.iter().enumerate() {
+                    for k in 0..3 {
+                        assert!((f64::from(base[3 * v + k] + moved[3 * v + k]) - p[k]).abs() < 1e-6);
+                    }
+                }
+            }
+        }
+        assert_eq!(faces, sequence.faces().len());
+        let animation = gltf.animations().next().unwrap();
+        let sampler = animation.channels().next().unwrap().sampler();
+        let (times, weights) = (floats(blob, &sampler.input()), floats(blob, &sampler.output()));
+        assert_eq!(times.len(), 7, "a key for every pose and one that closes the loop");
+        assert!((f64::from(times[6]) - 1.2 * f64::from(times[5])).abs() < 1e-6);
+        assert_eq!(weights.len(), 7 * 6);
+        for (key, row) in weights.chunks_exact(6).enumerate() {
+            let one = row.iter().position(|&w| w == 1.0);
+            assert_eq!(one, Some(key % 6));
+            assert_eq!(row.iter().sum::<f32>(), 1.0);
+        }
+    }
+
+    #[test]
+    fn writes_still_and_empty_meshes_and_odd_labels() {
+        let points = vec![DVec3::ZERO, DVec3::X, DVec3::Y, DVec3::Z];
+        let faces = vec![[0, 1, 2], [0, 2, 3]];
+        let still = Sequence::new("still", faces.clone(), points.clone(), vec![]).unwrap();
+        let gltf = gltf::Gltf::from_slice(&parts(&still, &[7], &[])).unwrap();
+        let names: Vec<_> = gltf.materials().map(|m| m.name().unwrap().to_owned()).collect();
+        assert_eq!(names, ["part 1", "part 8"]);
+        assert_eq!(gltf.animations().len(), 0);
+        let empty = Sequence::new("empty", vec![], vec![], vec![]).unwrap();
+        assert_eq!(gltf::Gltf::from_slice(&parts(&empty, &[], &[])).unwrap().meshes().len(), 0);
+        let pose = |time: f64| Pose { name: String::new(), time, positions: points.clone() };
+        let same_time = Sequence::new("x", faces, points.clone(), vec![pose(3.0), pose(3.0)]).unwrap();
+        let bytes = parts(&same_time, &[0, 0], &[[2.0, f32::NAN, 0.0]]);
+        let gltf = gltf::Gltf::from_slice(&bytes).unwrap();
+        let input = gltf.animations().next().unwrap().channels().next().unwrap().sampler().input();
+        assert_eq!(floats(gltf.blob.as_deref().unwrap(), &input), [0.0, STEP]);
+    }
+}

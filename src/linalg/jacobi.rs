@@ -1,0 +1,78 @@
+//! Eigenvectors of small symmetric matrices by cyclic Jacobi rotations: slow for large matrices, but accurate for every
+//! input, repeated and zero eigenvalues included.
+//!
+//! Gene H. Golub, Charles F. Van Loan. Matrix Computations, 4th edition, §8.5.
+
+/// A unit eigenvector of the largest eigenvalue of a symmetric matrix. Where the eigenvalue is repeated, one of its
+/// eigenvectors; for the zero matrix, the first axis.
+pub fn largest_eigenvector<const N: usize>(mut a: [[f64; N]; N]) -> [f64; N] {
+    let mut v = [[0.0; N]; N];
+    for (i, row) in v.iter_mut().enumerate() {
+        row[i] = 1.0;
+    }
+    let size: f64 = a.iter().flatten().map(|x| x * x).sum();
+    for _sweep in 0..30 {
+        let off: f64 = (0..N).flat_map(|p| (p + 1..N).map(move |q| (p, q))).map(|(p, q)| a[p][q] * a[p][q]).sum();
+        if off <= 1e-32 * size {
+            break;
+        }
+        for p in 0..N {
+            for q in p + 1..N {
+                rotate(&mut a, &mut v, p, q);
+            }
+        }
+    }
+    let largest = (1..N).fold(0, |best, i| if a[i][i] > a[best][best] { i } else { best });
+    std::array::from_fn(|i| v[i][largest])
+}
+
+/// Makes `a[p][q]` zero by a rotation in the plane of axes p and q, collected in the columns of `v`.
+fn rotate<const N: usize>(a: &mut [[f64; N]; N], v: &mut [[f64; N]; N], p: usize, q: usize) {
+    if a[p][q] == 0.0 {
+        return;
+    }
+    let theta = (a[q][q] - a[p][p]) / (2.0 * a[p][q]);
+    let t = if theta.is_finite() { theta.signum() / (theta.abs() + theta.hypot(1.0)) } else { 0.0 };
+    let c = 1.0 / t.hypot(1.0);
+    let s = t * c;
+    for k in 0..N {
+        let (kp, kq) = (a[k][p], a[k][q]);
+        a[k][p] = c * kp - s * kq;
+        a[k][q] = s * kp + c * kq;
+    }
+    for k in 0..N {
+        let (pk, qk) = (a[p][k], a[q][k]);
+        a[p][k] = c * pk - s * qk;
+        a[q][k] = s * pk + c * qk;
+    }
+    for row in v.iter_mut() {
+        let (kp, kq) = (row[p], row[q]);
+        row[p] = c * kp - s * kq;
+        row[q] = s * kp + c * kq;
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+
+    proptest! {
+        #[test]
+        fn the_vector_reaches_the_largest_rayleigh_quotient(
+            m in prop::array::uniform4(prop::array::uniform4(-2.0..2.0f64)), rank_one in any::<bool>(),
+        ) {
+            let a: [[f64; 4]; 4] = std::array::from_fn(|i| std::array::from_fn(|j| {
+                if rank_one { m[0][i] * m[0][j] } else { m[i][j] + m[j][i] }
+            }));
+            let v = largest_eigenvector(a);
+            let times: [f64; 4] = std::array::from_fn(|i| (0..4).map(|j| a[i][j] * v[j]).sum());
+            let lambda: f64 = (0..4).map(|i| v[i] * times[i]).sum();
+            let oracle = nalgebra::Matrix4::from_fn(|i, j| a[i][j]).symmetric_eigenvalues().max();
+            prop_assert!((lambda - oracle).abs() < 1e-9);
+            for i in 0..4 {
+                prop_assert!((times[i] - lambda * v[i]).abs() < 1e-9);
+            }
+        }
+    }
+}

@@ -1,0 +1,144 @@
+//! Which connected pieces of a mesh lie nearest to each other.
+
+use super::DualGraph;
+use glam::DVec3;
+
+/// Faces of one piece that are asked for their nearest face on another piece; more are thinned out evenly.
+const ASKED: usize = 400;
+
+/// Pairs of faces that join all connected pieces into one: each piece to the piece nearest to it (by face centroids),
+/// then the groups so made, until all hang together (Borůvka's minimum spanning tree). Empty for a mesh in one piece.
+pub fn bridges(graph: &DualGraph, centroids: &[DVec3]) -> Vec<[u32; 2]> {
+    let (piece, count) = graph.pieces();
+    let mut bridges = Vec::new();
+    if count < 2 {
+        return bridges;
+    }
+    let mut faces_of = vec![Vec::new(); count];
+    for (f, &p) in piece.iter().enumerate() {
+        faces_of[p as usize].push(f as u32);
+    }
+    let tree = KdTree::new(centroids);
+    let mut group = Groups::new(count);
+    loop {
+        let of_piece: Vec<u32> = (0..count as u32).map(|p| group.root(p)).collect();
+        let mut best: Vec<Option<(f64, [u32; 2])>> = vec![None; count];
+        for (own, &g) in faces_of.iter().zip(&of_piece) {
+            let best = &mut best[g as usize];
+            let step = own.len().div_ceil(ASKED);
+            for &f in own.iter().step_by(step) {
+                let limit = best.map_or(f64::INFINITY, |(d, _)| d);
+                let other = |face: u32| of_piece[piece[face as usize] as usize] != g;
+                if let Some((d, face)) = tree.nearest(centroids[f as usize], limit, &other) {
+                    *best = Some((d, [f, face]));
+                }
+            }
+        }
+        let before = bridges.len();
+        for (_, pair) in best.into_iter().flatten() {
+            if group.join(pair.map(|f| piece[f as usize])) {
+                bridges.push(pair);
+            }
+        }
+        if bridges.len() == before || bridges.len() + 1 == count {
+            break;
+        }
+    }
+    bridges
+}
+
+/// Disjoint sets of pieces.
+struct Groups {
+    parent: Vec<u32>,
+}
+
+impl Groups {
+    fn new(count: usize) -> Self {
+        Self { parent: (0..count as u32).collect() }
+    }
+
+    fn root(&mut self, mut p: u32) -> u32 {
+        while self.parent[p as usize] != p {
+            let up = self.parent[self.parent[p as usize] as usize];
+            self.parent[p as usize] = up;
+            p = up;
+        }
+        p
+    }
+
+    /// False if the two are together already.
+    fn join(&mut self, pair: [u32; 2]) -> bool {
+        let [a, b] = pair.map(|p| self.root(p));
+        self.parent[a.max(b) as usize] = a.min(b);
+        a != b
+    }
+}
+
+/// A balanced k-d tree over points, laid out in place.
+struct KdTree<'a> {
+    points: &'a [DVec3],
+    order: Vec<u32>,
+}
+
+impl<'a> KdTree<'a> {
+    fn new(points: &'a [DVec3]) -> Self {
+        let mut order: Vec<u32> = (0..points.len() as u32).collect();
+        let mut stack = vec![(0, points.len(), 0)];
+        while let Some((from, to, axis)) = stack.pop() {
+            if to - from < 2 {
+                continue;
+            }
+            let middle = (from + to) / 2;
+            let key = |i: &u32| (points[*i as usize][axis], *i);
+            order[from..to].select_nth_unstable_by(middle - from, |a, b| {
+                let ((x, i), (y, j)) = (key(a), key(b));
+                x.total_cmp(&y).then(i.cmp(&j))
+            });
+            stack.push((from, middle, (axis + 1) % 3));
+            stack.push((middle + 1, to, (axis + 1) % 3));
+        }
+        Self { points, order }
+    }
+
+    /// The nearest point closer than `limit` that is `wanted`, and its squared distance (`limit` is squared, too).
+    fn nearest(&self, to: DVec3, limit: f64, wanted: &dyn Fn(u32) -> bool) -> Option<(f64, u32)> {
+        let mut best = limit;
+        let mut found = None;
+        let mut stack = vec![(0, self.order.len(), 0, 0.0)];
+        while let Some((from, end, axis, gap)) = stack.pop() {
+            if from >= end || gap >= best {
+                continue;
+            }
+            let middle = (from + end) / 2;
+            let point = self.order[middle];
+            let d = self.points[point as usize].distance_squared(to);
+            if d < best && wanted(point) {
+                best = d;
+                found = Some((d, point));
+            }
+            let side = to[axis] - self.points[point as usize][axis];
+            let next = (axis + 1) % 3;
+            let (low, high) = ((from, middle), (middle + 1, end));
+            let (near, far) = if side < 0.0 { (low, high) } else { (high, low) };
+            stack.push((far.0, far.1, next, side * side));
+            stack.push((near.0, near.1, next, gap));
+        }
+        found
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn pieces_hang_together_by_their_nearest_faces() {
+        // Four single faces along a line, at 0, 1, 5 and 5.5.
+        let faces: Vec<[u32; 3]> = (0..4).map(|i| [3 * i, 3 * i + 1, 3 * i + 2]).collect();
+        let centroids = [0.0, 1.0, 5.0, 5.5].map(|x| DVec3::new(x, 0.0, 0.0));
+        let mut found = bridges(&DualGraph::new(&faces), &centroids);
+        found.iter_mut().for_each(|b| b.sort_unstable());
+        found.sort_unstable();
+        assert_eq!(found, [[0, 1], [1, 2], [2, 3]]);
+    }
+}

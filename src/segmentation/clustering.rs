@@ -1,0 +1,194 @@
+//! Face clustering (§3.3): every face goes to the partition with the smallest of its distance to the partition's
+//! features and its average distance to the partition's faces (Eq. 7), again and again until none moves; partitions that
+//! fall apart are split by their pieces and clustered again.
+
+use super::averages::Averages;
+use super::shortest_paths::{NONE, ShortestPaths};
+use super::{Feature, SegmentationError};
+use crate::mesh::DualGraph;
+
+/// The paper saw fewer than 10 rounds; a cycle of states would never end.
+const MOST_ROUNDS: usize = 30;
+
+/// Splitting into pieces and clustering again settles within a few repeats.
+const MOST_REPEATS: usize = 8;
+
+/// #F partition numbers after every round of clustering; the last is the result, every partition in one piece.
+#[derive(Clone, Debug)]
+pub struct Clustering {
+    /// The rounds.
+    pub rounds: Vec<Vec<u32>>,
+    /// Number of partitions of the last round.
+    pub partitions: usize,
+}
+
+/// Eq. 6: every face goes to its nearest feature, each feature its own partition. One shortest-path search; partitions
+/// are in one piece by construction.
+pub fn nearest_features(graph: &DualGraph, weights: &[f64], features: &[Feature]) -> Clustering {
+    let sources = features.iter().enumerate().map(|(i, feature)| (feature.face, i as u32));
+    let mut labels = ShortestPaths::from_sources(graph, weights, sources).label;
+    let partitions = compact(&mut labels);
+    Clustering { rounds: vec![labels], partitions }
+}
+
+/// Eq. 7 with the given way to average distances.
+///
+/// `keep_going` hears how far along it is (0 to 1) and may stop it.
+pub fn cluster(
+    graph: &DualGraph,
+    weights: &[f64],
+    features: &[Feature],
+    averages: &mut dyn Averages,
+    keep_going: &mut dyn FnMut(f64) -> bool,
+) -> Result<Clustering, SegmentationError> {
+    let mut partition_of: Vec<u32> = features.iter().map(|f| f.partition).collect();
+    let mut rounds = Vec::new();
+    for repeat in 0..MOST_REPEATS {
+        let partitions = partition_of.iter().max().map_or(0, |&m| m as usize + 1);
+        let share = |x: f64| (repeat as f64 + x) / MOST_REPEATS as f64;
+        let near = feature_distances(graph, weights, features, &partition_of, partitions);
+        iterate(&near, partitions, features, &partition_of, averages, &mut rounds, &mut |x| keep_going(share(x)))?;
+        let labels = rounds.last().map_or(&[][..], Vec::as_slice);
+        if !split_by_pieces(graph, labels, features, &mut partition_of) {
+            break;
+        }
+    }
+    let mut labels = rounds.last().cloned().unwrap_or_default();
+    absorb_fragments(graph, weights, &mut labels);
+    let partitions = compact(&mut labels);
+    if rounds.last() != Some(&labels) {
+        rounds.push(labels);
+    }
+    Ok(Clustering { rounds, partitions })
+}
+
+/// For every partition, #F distances to the nearest of its features.
+fn feature_distances(
+    graph: &DualGraph,
+    weights: &[f64],
+    features: &[Feature],
+    partition_of: &[u32],
+    partitions: usize,
+) -> Vec<Vec<f32>> {
+    let of_partition = |i: usize| {
+        let own = features.iter().zip(partition_of).filter(move |&(_, &p)| p as usize == i);
+        let paths = ShortestPaths::from_sources(graph, weights, own.map(|(f, _)| (f.face, 0)));
+        paths.distance.iter().map(|&d| d as f32).collect()
+    };
+    (0..partitions).map(of_partition).collect()
+}
+
+/// Assigns all faces until none moves or a state comes back.
+fn iterate(
+    near: &[Vec<f32>],
+    partitions: usize,
+    features: &[Feature],
+    partition_of: &[u32],
+    averages: &mut dyn Averages,
+    rounds: &mut Vec<Vec<u32>>,
+    keep_going: &mut dyn FnMut(f64) -> bool,
+) -> Result<(), SegmentationError> {
+    let faces = near.first().map_or(0, Vec::len);
+    // F_i = P_i at the start; the other faces belong to no partition yet.
+    let mut labels = vec![NONE; faces];
+    for (feature, &partition) in features.iter().zip(partition_of) {
+        labels[feature.face as usize] = partition;
+    }
+    let first = rounds.len();
+    for round in 0..MOST_ROUNDS {
+        let mut sub = |x: f64| keep_going((round as f64 + x) / MOST_ROUNDS as f64);
+        averages.update(&labels, partitions, &mut sub)?;
+        let mut row = vec![0.0; partitions];
+        let nearest = |f: usize| -> u32 {
+            averages.of(f as u32, &mut row);
+            let mut best = (f32::INFINITY, NONE);
+            for i in 0..partitions {
+                let d = near[i][f].min(row[i]);
+                if d < best.0 {
+                    best = (d, i as u32);
+                }
+            }
+            best.1
+        };
+        let next: Vec<u32> = (0..faces).map(nearest).collect();
+        let settled = rounds[first..].contains(&next);
+        labels.clone_from(&next);
+        if settled {
+            break;
+        }
+        rounds.push(next);
+    }
+    Ok(())
+}
+
+/// Gives the features of every piece of a partition that fell apart a partition of their own. False if none did.
+fn split_by_pieces(graph: &DualGraph, labels: &[u32], features: &[Feature], partition_of: &mut [u32]) -> bool {
+    let (piece, _) = graph.pieces_where(|a, b| labels[a as usize] == labels[b as usize]);
+    let mut keys: Vec<(u32, u32)> = features
+        .iter()
+        .zip(partition_of.iter())
+        .map(|(feature, &partition)| (partition, piece[feature.face as usize]))
+        .collect();
+    let key_of_feature = keys.clone();
+    keys.sort_unstable();
+    keys.dedup();
+    let before = partition_of.iter().max().map_or(0, |&m| m as usize + 1);
+    for (partition, key) in partition_of.iter_mut().zip(key_of_feature) {
+        *partition = keys.partition_point(|k| *k < key) as u32;
+    }
+    keys.len() > before
+}
+
+/// Pieces of a label that are not its largest join, one at a time and the smallest first, the neighbour across the
+/// cheapest edge, until every label is in one piece on each connected piece of the mesh.
+pub fn absorb_fragments(graph: &DualGraph, weights: &[f64], labels: &mut [u32]) {
+    loop {
+        let (piece, count) = graph.pieces_where(|a, b| labels[a as usize] == labels[b as usize]);
+        let mut size = vec![0usize; count];
+        let mut label = vec![NONE; count];
+        for (f, &p) in piece.iter().enumerate() {
+            size[p as usize] += 1;
+            label[p as usize] = labels[f];
+        }
+        // The largest piece of every label stays.
+        let mut by_label: Vec<(u32, std::cmp::Reverse<usize>, u32)> =
+            (0..count).map(|p| (label[p], std::cmp::Reverse(size[p]), p as u32)).collect();
+        by_label.sort_unstable();
+        let fragment: Vec<u32> = by_label.windows(2).filter(|w| w[0].0 == w[1].0).map(|w| w[1].2).collect();
+        let mut is_fragment = vec![false; count];
+        for &p in &fragment {
+            is_fragment[p as usize] = true;
+        }
+        let mut target: Vec<Option<(f64, u32)>> = vec![None; count];
+        for (edge, &w) in graph.edges().iter().zip(weights) {
+            let [a, b] = edge.faces.map(|f| piece[f as usize]);
+            for (from, to) in [(a, b), (b, a)] {
+                let better = target[from as usize].is_none_or(|(best, _)| w < best);
+                if from != to && is_fragment[from as usize] && !is_fragment[to as usize] && better {
+                    target[from as usize] = Some((w, label[to as usize]));
+                }
+            }
+        }
+        let mut changed = false;
+        for (f, &p) in piece.iter().enumerate() {
+            if let Some((_, to)) = target[p as usize] {
+                labels[f] = to;
+                changed = true;
+            }
+        }
+        if !changed {
+            return;
+        }
+    }
+}
+
+/// Numbers the labels in use from 0 in the order of their first faces; returns how many there are. Faces without a label
+/// ([`NONE`]) get labels of their own, one for all of them.
+pub fn compact(labels: &mut [u32]) -> usize {
+    let mut new = std::collections::BTreeMap::new();
+    for label in labels.iter_mut() {
+        let next = new.len() as u32;
+        *label = *new.entry(*label).or_insert(next);
+    }
+    new.len()
+}

@@ -1,0 +1,121 @@
+//! How faces move, as far as rigid parts care: their centroids in the reference pose and in every pose, and the rigid
+//! motions that explain sets of them.
+
+use crate::linalg::rigid_fit::{Moments, RigidMotion};
+use crate::mesh::face;
+use crate::sequence::Sequence;
+use glam::{DVec3, Vec3};
+
+/// Face centroids at unit diagonal, about the middle of the mesh, and the weight of each face.
+pub struct FaceMotion {
+    poses: usize,
+    weight: Vec<f64>,
+    reference: Vec<Vec3>,
+    /// Face by face, #T centroids.
+    moved: Vec<Vec3>,
+}
+
+/// The moments of one part, one set a pose.
+pub type PartMoments = Vec<Moments>;
+
+impl FaceMotion {
+    /// Takes the centroids of #F faces of a sequence; `scale` is one over its diagonal.
+    pub fn new(sequence: &Sequence, scale: f64, weight: Vec<f64>) -> Self {
+        let (faces, poses) = (sequence.faces(), sequence.poses().len());
+        let centroids = |positions: &[DVec3]| -> Vec<Vec3> {
+            let mut all: Vec<DVec3> = faces.iter().map(|&f| face::centroid(face::corners(positions, f))).collect();
+            let middle = all.iter().copied().sum::<DVec3>() / all.len().max(1) as f64;
+            all.iter_mut().map(|c| ((*c - middle) * scale).as_vec3()).collect()
+        };
+        let mut moved = vec![Vec3::ZERO; faces.len() * poses];
+        for (t, pose) in sequence.poses().iter().enumerate() {
+            for (f, c) in centroids(&pose.positions).into_iter().enumerate() {
+                moved[f * poses + t] = c;
+            }
+        }
+        Self { poses, weight, reference: centroids(sequence.reference()), moved }
+    }
+
+    /// Number of poses.
+    pub fn pose_count(&self) -> usize {
+        self.poses
+    }
+
+    /// Number of faces.
+    pub fn face_count(&self) -> usize {
+        self.reference.len()
+    }
+
+    /// Weight of a face in sums of squares.
+    pub fn weight(&self, face: u32) -> f64 {
+        self.weight[face as usize]
+    }
+
+    /// #T centroids of a face.
+    fn moved(&self, face: u32) -> &[Vec3] {
+        &self.moved[face as usize * self.poses..][..self.poses]
+    }
+
+    /// Adds a face to the moments of a part.
+    pub fn add_face(&self, moments: &mut PartMoments, face: u32) {
+        let (w, p) = (self.weight[face as usize], self.reference[face as usize].as_dvec3());
+        for (m, q) in moments.iter_mut().zip(self.moved(face)) {
+            m.add(w, p, q.as_dvec3());
+        }
+    }
+
+    /// Moments of the parts `0..parts` under #F labels.
+    pub fn moments(&self, labels: &[u32], parts: usize) -> Vec<PartMoments> {
+        let mut moments = vec![vec![Moments::default(); self.poses]; parts];
+        for (f, &label) in labels.iter().enumerate() {
+            self.add_face(&mut moments[label as usize], f as u32);
+        }
+        moments
+    }
+
+    /// Summed squared distance of a face's centroids from where the motion puts its reference centroid (not weighted).
+    pub fn error(&self, motion: &[Rigid32], face: u32) -> f32 {
+        let p = self.reference[face as usize];
+        motion.iter().zip(self.moved(face)).map(|(m, &q)| (m.rotation * p + m.translation - q).length_squared()).sum()
+    }
+}
+
+/// A rigid motion in single precision, for the many evaluations of [`FaceMotion::error`].
+#[derive(Clone, Copy, Debug)]
+pub struct Rigid32 {
+    rotation: glam::Mat3,
+    translation: Vec3,
+}
+
+/// The best rigid motions of a part.
+pub fn best_motion(moments: &PartMoments) -> Vec<Rigid32> {
+    moments
+        .iter()
+        .map(|m| {
+            let RigidMotion { rotation, translation } = m.motion();
+            Rigid32 { rotation: rotation.as_mat3(), translation: translation.as_vec3() }
+        })
+        .collect()
+}
+
+/// Weighted squared residual of a part over all poses.
+pub fn residual(moments: &PartMoments) -> f64 {
+    moments.iter().map(Moments::residual).sum()
+}
+
+/// Weighted squared residual of the union of two parts.
+pub fn union_residual(a: &PartMoments, b: &PartMoments) -> f64 {
+    let union = |(x, y): (&Moments, &Moments)| {
+        let mut sum = *x;
+        sum.merge(y);
+        sum.residual()
+    };
+    a.iter().zip(b).map(union).sum()
+}
+
+/// Adds `b`'s faces to `a`.
+pub fn merge(a: &mut PartMoments, b: &PartMoments) {
+    for (x, y) in a.iter_mut().zip(b) {
+        x.merge(y);
+    }
+}

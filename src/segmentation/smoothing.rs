@@ -1,0 +1,154 @@
+//! Boundary smoothing (§3.4): within a band around the boundary of two parts, the cheapest cut through the dual graph.
+//!
+//! As printed, Eq. 8 makes a strongly deforming edge *expensive* to cut, against the sentence above it. The default
+//! turns the first term round; [`Smoothing::Printed`] is the letter. Beyond the paper, a face that one of the two parts'
+//! motions explains better pulls towards that part, so that a smooth boundary does not cost rigidity.
+
+use super::Smoothing;
+use super::motion::{self, FaceMotion};
+use crate::mesh::DualGraph;
+use std::collections::{BTreeMap, BTreeSet, VecDeque};
+
+/// The mesh, as smoothing sees it.
+pub struct Input<'a> {
+    /// The dual graph.
+    pub graph: &'a DualGraph,
+    /// #E deformation distances (Eq. 4).
+    pub deformation: &'a [f64],
+    /// #E geodesic distances between centroids, at unit diagonal.
+    pub geodesic: &'a [f64],
+    /// #E lengths of the shared mesh edges, at unit diagonal.
+    pub edge_length: &'a [f64],
+    /// #F areas, at unit diagonal.
+    pub areas: &'a [f64],
+    /// How the faces move.
+    pub faces: &'a FaceMotion,
+}
+
+/// Half the width of the band in which a boundary may move, at unit diagonal, and in faces where faces are large.
+const BAND: f64 = 0.02;
+const BAND_FACES: u32 = 3;
+
+/// #E prices of cutting each dual edge (Eq. 8, in mean edge lengths).
+pub fn capacities(input: &Input<'_>, alpha: f64, smoothing: Smoothing) -> Vec<f64> {
+    let mean = |values: &[f64]| values.iter().sum::<f64>() / values.len().max(1) as f64;
+    let (mean_deformation, mean_length) = (mean(input.deformation), mean(input.edge_length));
+    let over = |x: f64, mean: f64| if mean > 0.0 { x / mean } else { 0.0 };
+    let price = |(&d, &length): (&f64, &f64)| {
+        let d = over(d, mean_deformation);
+        let first = if smoothing == Smoothing::Printed { d } else { 1.0 / (1.0 + d) };
+        alpha * first + (1.0 - alpha) * over(length, mean_length)
+    };
+    input.deformation.iter().zip(input.edge_length).map(price).collect()
+}
+
+/// Smooths the boundary between every two parts that touch, in the order of their numbers.
+///
+/// `pull` weighs rigidity against shortness: a region that lies on the wrong side and is explained worse by as much as
+/// the mean squared residual costs `pull` times its area, at unit diagonal, where boundary costs its length; both do not
+/// depend on how finely the mesh is divided. 0: the letter of the paper.
+pub fn smooth(input: &Input<'_>, capacity: &[f64], labels: &mut [u32], parts: usize, pull: f64) {
+    let moments = input.faces.moments(labels, parts);
+    let mean_square = moments.iter().map(motion::residual).sum::<f64>() / labels.len().max(1) as f64;
+    let motions: Vec<_> = moments.iter().map(motion::best_motion).collect();
+    let mean_length = input.edge_length.iter().sum::<f64>() / input.edge_length.len().max(1) as f64;
+    let pull = pull / (mean_square * mean_length);
+    let pull = if pull.is_finite() { pull } else { 0.0 };
+    let mut pairs = BTreeSet::new();
+    for edge in input.graph.edges() {
+        let [a, b] = edge.faces.map(|f| labels[f as usize]);
+        if a != b {
+            pairs.insert((a.min(b), a.max(b)));
+        }
+    }
+    for (a, b) in pairs {
+        let band = Band::around(input, labels, a, b);
+        let mut cut = super::max_flow::MinCut::new(band.faces.len());
+        for (i, &f) in band.faces.iter().enumerate() {
+            let [on_a, on_b] = match band.rim[i] {
+                // The faces just outside the band hold their side.
+                true if labels[f as usize] == a => [0.0, f64::INFINITY],
+                true => [f64::INFINITY, 0.0],
+                false if pull > 0.0 => {
+                    let weight = pull * input.areas[f as usize];
+                    [a, b].map(|part| weight * f64::from(input.faces.error(&motions[part as usize], f)))
+                }
+                false => [0.0, 0.0],
+            };
+            let common = on_a.min(on_b);
+            cut.prefer(i, on_b - common, on_a - common);
+            for link in input.graph.neighbours(f) {
+                if let Some(&j) = band.slot.get(&link.face)
+                    && i < j
+                {
+                    cut.edge(i, j, capacity[link.edge as usize]);
+                }
+            }
+        }
+        let (on_side_a, _) = cut.solve();
+        for (i, &f) in band.faces.iter().enumerate().filter(|&(i, _)| !band.rim[i]) {
+            labels[f as usize] = if on_side_a[i] { a } else { b };
+        }
+    }
+}
+
+/// The faces of two parts near their common boundary, and around them a rim of faces that do not move.
+struct Band {
+    faces: Vec<u32>,
+    rim: Vec<bool>,
+    slot: BTreeMap<u32, usize>,
+}
+
+impl Band {
+    fn around(input: &Input<'_>, labels: &[u32], a: u32, b: u32) -> Self {
+        let of_pair = |f: u32| labels[f as usize] == a || labels[f as usize] == b;
+        let mut band = Self { faces: Vec::new(), rim: Vec::new(), slot: BTreeMap::new() };
+        let mut queue = VecDeque::new();
+        for edge in input.graph.edges() {
+            let [f, g] = edge.faces;
+            if labels[f as usize] != labels[g as usize] && of_pair(f) && of_pair(g) {
+                for face in [f, g] {
+                    if band.insert(face, false) {
+                        queue.push_back((face, 0u32, 0.0));
+                    }
+                }
+            }
+        }
+        while let Some((f, steps, far)) = queue.pop_front() {
+            for link in input.graph.neighbours(f) {
+                if !of_pair(link.face) {
+                    continue;
+                }
+                let (steps, far) = (steps + 1, far + input.geodesic[link.edge as usize]);
+                let outside = steps > BAND_FACES && far > BAND;
+                if band.insert(link.face, outside) && !outside {
+                    queue.push_back((link.face, steps, far));
+                }
+            }
+        }
+        band.hold_each_side(labels, a, b);
+        band
+    }
+
+    fn insert(&mut self, face: u32, rim: bool) -> bool {
+        if self.slot.contains_key(&face) {
+            return false;
+        }
+        self.slot.insert(face, self.faces.len());
+        self.faces.push(face);
+        self.rim.push(rim);
+        true
+    }
+
+    /// A part that lies in the band as a whole would vanish: the face reached last holds its side.
+    fn hold_each_side(&mut self, labels: &[u32], a: u32, b: u32) {
+        for part in [a, b] {
+            let own = |i: &usize| labels[self.faces[*i] as usize] == part;
+            if !(0..self.faces.len()).any(|i| own(&i) && self.rim[i])
+                && let Some(last) = (0..self.faces.len()).rev().find(own)
+            {
+                self.rim[last] = true;
+            }
+        }
+    }
+}

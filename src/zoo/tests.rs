@@ -1,0 +1,266 @@
+//! What holds for every creature.
+
+use super::*;
+use glam::DMat3;
+use std::collections::BTreeMap;
+
+fn recipe(name: &str, faces: usize, exact: bool) -> Recipe {
+    Recipe { name: name.into(), faces, poses: 8, exact }
+}
+
+fn every(faces: usize, exact: bool) -> impl Iterator<Item = (&'static str, Creature)> {
+    NAMES.iter().map(move |&name| (name, make(&recipe(name, faces, exact)).unwrap()))
+}
+
+fn area(corners: [DVec3; 3]) -> f64 {
+    0.5 * (corners[1] - corners[0]).cross(corners[2] - corners[0]).length()
+}
+
+/// Checks that a mesh is one closed oriented manifold of the topology of a sphere.
+fn check_closed(name: &str, points: &[DVec3], faces: &[[u32; 3]]) {
+    let mut edges: BTreeMap<(u32, u32), u32> = BTreeMap::new();
+    for &[a, b, c] in faces {
+        for edge in [(a, b), (b, c), (c, a)] {
+            *edges.entry(edge).or_default() += 1;
+        }
+    }
+    for (&(a, b), &count) in &edges {
+        assert_eq!((count, edges.get(&(b, a))), (1, Some(&1)), "{name}: edge {a} {b}");
+    }
+    let used: std::collections::BTreeSet<u32> = faces.iter().flatten().copied().collect();
+    assert_eq!(used.len(), points.len(), "{name}: every vertex is used");
+    // Around each vertex there is one fan: following the faces around it meets all of them.
+    let mut next_around: BTreeMap<(u32, u32), u32> = BTreeMap::new();
+    let mut valence = vec![0; points.len()];
+    for &[a, b, c] in faces {
+        for (v, from, to) in [(a, b, c), (b, c, a), (c, a, b)] {
+            next_around.insert((v, from), to);
+            valence[v as usize] += 1;
+        }
+    }
+    for &[v, start, _] in faces {
+        let (mut at, mut steps) = (start, 0);
+        while steps == 0 || at != start {
+            at = next_around[&(v, at)];
+            steps += 1;
+        }
+        assert_eq!(steps, valence[v as usize], "{name}: fan around {v}");
+    }
+    let euler = points.len() as i64 - edges.len() as i64 / 2 + faces.len() as i64;
+    assert_eq!(euler, 2, "{name}: one piece without handles");
+    let volume: f64 =
+        faces.iter().map(|f| f.map(|v| points[v as usize])).map(|[a, b, c]| a.dot(b.cross(c)) / 6.0).sum();
+    assert!(volume > 0.01, "{name}: outwards, volume {volume}");
+}
+
+/// Smallest angle of each face in degrees, sorted.
+fn angles(points: &[DVec3], faces: &[[u32; 3]]) -> Vec<f64> {
+    let mut smallest: Vec<f64> = faces
+        .iter()
+        .map(|f| {
+            let p = f.map(|v| points[v as usize]);
+            (0..3)
+                .map(|i| (p[(i + 1) % 3] - p[i]).angle_between(p[(i + 2) % 3] - p[i]).to_degrees())
+                .fold(180.0, f64::min)
+        })
+        .collect();
+    smallest.sort_by(f64::total_cmp);
+    smallest
+}
+
+#[test]
+fn meshes_are_closed_and_well_shaped_at_every_size() {
+    for faces in [1_000, 12_000, 100_000] {
+        for (name, creature) in every(faces, false) {
+            let made = creature.sequence.faces();
+            let off = made.len() as f64 / faces as f64 - 1.0;
+            assert!(off.abs() < 0.15, "{name}: {} faces instead of {faces}", made.len());
+            check_closed(name, &creature.made, made);
+            let angles = angles(&creature.made, made);
+            let quantile = |share: f64| angles[(share * angles.len() as f64) as usize];
+            assert!(quantile(0.0) > 0.5, "{name} {faces}: smallest angle {}", quantile(0.0));
+            assert!(quantile(0.01) > 12.0, "{name} {faces}: 1 % quantile {}", quantile(0.01));
+            assert!(quantile(0.5) > 38.0, "{name} {faces}: median {}", quantile(0.5));
+        }
+    }
+}
+
+#[test]
+fn left_and_right_agree() {
+    for (name, creature) in every(12_000, false) {
+        let faces = creature.sequence.faces();
+        let mut areas = BTreeMap::new();
+        for (face, &label) in faces.iter().zip(&creature.labels) {
+            *areas.entry(creature.parts[label as usize].clone()).or_insert(0.0) +=
+                area(face.map(|v| creature.made[v as usize]));
+        }
+        for (part, left) in areas.iter().filter(|(part, _)| part.starts_with("left")) {
+            let right = areas[&part.replace("left", "right")];
+            assert!((left / right - 1.0).abs() < 0.05, "{name}: {part} {left} against {right}");
+        }
+    }
+}
+
+#[test]
+fn weights_are_few_and_sum_to_one() {
+    for (name, creature) in every(3_000, false) {
+        assert_eq!(creature.weights.len(), creature.made.len());
+        for weights in &creature.weights {
+            assert!((1..=4).contains(&weights.len()), "{name}");
+            assert!(weights.iter().all(|w| w.1 > 0.0 && (w.0 as usize) < creature.parts.len()));
+            assert!((weights.iter().map(|w| w.1).sum::<f64>() - 1.0).abs() < 1e-12);
+        }
+    }
+}
+
+#[test]
+fn every_part_has_a_share_of_the_surface() {
+    for exact in [false, true] {
+        for (name, creature) in every(12_000, exact) {
+            let mut areas = vec![0.0; creature.parts.len()];
+            for (face, &label) in creature.sequence.faces().iter().zip(&creature.labels) {
+                areas[label as usize] += area(face.map(|v| creature.made[v as usize]));
+            }
+            let total: f64 = areas.iter().sum();
+            for (part, area) in creature.parts.iter().zip(&areas) {
+                assert!(area / total > 0.003, "{name}: {part} has {:.2} %", 100.0 * area / total);
+            }
+        }
+    }
+}
+
+/// The turn of a part from the reference to a pose, from three of its vertices that are far apart.
+fn turn(from: [DVec3; 3], to: [DVec3; 3]) -> DMat3 {
+    let frame = |[a, b, c]: [DVec3; 3]| {
+        let x = (b - a).normalize();
+        let z = (b - a).cross(c - a).normalize();
+        DMat3::from_cols(x, z.cross(x), z)
+    };
+    frame(to) * frame(from).transpose()
+}
+
+#[test]
+fn exact_parts_are_rigid_and_move_against_each_other() {
+    for (name, creature) in every(4_000, true) {
+        let reference = creature.sequence.reference();
+        let mut turns = Vec::new();
+        for part in 0..creature.parts.len() as u32 {
+            let members: Vec<usize> = (0..reference.len()).filter(|&v| creature.weights[v] == [(part, 1.0)]).collect();
+            let a = members[0];
+            let farthest = |score: &dyn Fn(usize) -> f64| {
+                members.iter().copied().max_by(|&i, &j| score(i).total_cmp(&score(j))).unwrap()
+            };
+            let b = farthest(&|v| reference[v].distance(reference[a]));
+            let c = farthest(&|v| (reference[v] - reference[a]).cross(reference[b] - reference[a]).length());
+            let mut by_pose = Vec::new();
+            for pose in creature.sequence.poses() {
+                let p = &pose.positions;
+                let turn = turn([a, b, c].map(|v| reference[v]), [a, b, c].map(|v| p[v]));
+                for &v in &members {
+                    let expected = p[a] + turn * (reference[v] - reference[a]);
+                    assert!(expected.distance(p[v]) < 1e-9, "{name}: {} is not rigid", creature.parts[part as usize]);
+                }
+                by_pose.push(turn);
+            }
+            turns.push(by_pose);
+        }
+        for (part, bone) in creature.skeleton.bones.iter().enumerate() {
+            let Some(parent) = bone.parent else { continue };
+            let between: Vec<DMat3> =
+                turns[part].iter().zip(&turns[parent as usize]).map(|(a, b)| b.transpose() * *a).collect();
+            let angle = |m: DMat3| ((m.x_axis.x + m.y_axis.y + m.z_axis.z - 1.0) / 2.0).clamp(-1.0, 1.0).acos();
+            let widest = (0..between.len())
+                .flat_map(|i| between.iter().map(move |m| (i, m)))
+                .map(|(i, m)| angle(between[i].transpose() * *m).to_degrees())
+                .fold(0.0, f64::max);
+            assert!(widest > 9.0, "{name}: {} turns only {widest:.1}° against its parent", bone.name);
+        }
+    }
+}
+
+#[test]
+fn motion_is_a_loop_on_the_ground() {
+    for (name, creature) in every(3_000, false) {
+        let poses = creature.sequence.poses();
+        let diagonal = creature.sequence.diagonal();
+        let step = |a: &Pose, b: &Pose| {
+            let far = a.positions.iter().zip(&b.positions).map(|(p, q)| p.distance(*q));
+            far.fold(0.0, f64::max) / diagonal
+        };
+        let steps: Vec<f64> = (0..poses.len()).map(|i| step(&poses[i], &poses[(i + 1) % poses.len()])).collect();
+        let longest = steps[..steps.len() - 1].iter().copied().fold(0.0, f64::max);
+        assert!(steps[steps.len() - 1] < 1.5 * longest, "{name}: the loop closes: {steps:?}");
+        for pose in poses {
+            let lowest = pose.positions.iter().map(|p| p.y).fold(f64::INFINITY, f64::min);
+            assert!(lowest.abs() < 1e-9, "{name}: lowest point at {lowest}");
+        }
+    }
+}
+
+#[test]
+fn gaits_return_to_their_start_and_planted_feet_stay_planted() {
+    for body in [horse::horse(), camel::camel(), person::person(), snake::snake()] {
+        let pose = |phase: f64| (body.motion.gait)(&body.skeleton, phase);
+        for (a, b) in pose(0.0).iter().zip(&pose(1.0)) {
+            assert!(a.shift.distance(b.shift) < 1e-9 && a.turn.angle_between(b.turn) < 1e-6);
+        }
+        for (bone, number) in body.skeleton.bones.iter().zip(0..).filter(|(b, _)| b.name.contains("left fore hoof")) {
+            // Somewhere in the loop a fore foot is on the ground for half of it, moving back evenly.
+            let sole = DVec3::new(bone.end.x, 0.0, bone.end.z);
+            let on_ground = (0..100).filter(|i| pose(*i as f64 / 100.0)[number as usize].apply(sole).y < 0.012).count();
+            assert!((40..75).contains(&on_ground), "{}: {on_ground} % of the loop on the ground", bone.name);
+        }
+    }
+}
+
+#[test]
+fn the_two_persons_are_one_mesh_in_two_poses() {
+    let [down, out] = ["person", "person-arms-out"].map(|name| make(&recipe(name, 3_000, false)).unwrap());
+    assert_eq!(down.sequence.faces(), out.sequence.faces());
+    assert_eq!(down.sequence.poses(), out.sequence.poses());
+    let width = |c: &Creature| c.sequence.reference().iter().map(|p| p.x).fold(0.0, f64::max);
+    assert!(width(&out) > 1.6 * width(&down));
+}
+
+#[test]
+fn correspondences_lie_on_the_same_bones() {
+    for (a, b, least) in [("horse", "camel", 60), ("camel", "horse", 60), ("person", "person-arms-out", 40)] {
+        let a = make(&recipe(a, 12_000, false)).unwrap();
+        let b = make(&Recipe { faces: 9_000, ..recipe(b, 0, false) }).unwrap();
+        let pairs = correspondences(&a, &b, least);
+        assert_eq!(pairs.len(), least);
+        for &(v, w) in &pairs {
+            let bone = |c: &Creature, v: u32| c.parts[c.weights[v as usize][0].0 as usize].clone();
+            assert_eq!(bone(&a, v), bone(&b, w));
+        }
+        let bones: std::collections::BTreeSet<u32> = pairs.iter().map(|p| a.weights[p.0 as usize][0].0).collect();
+        assert!(bones.len() * 5 > a.parts.len() * 4, "most bones have a point: {} of {}", bones.len(), a.parts.len());
+        // Left goes to left.
+        assert!(pairs.iter().all(|p| a.made[p.0 as usize].x * b.made[p.1 as usize].x > -0.01));
+        let closest = pairs
+            .iter()
+            .enumerate()
+            .flat_map(|(i, p)| pairs[..i].iter().map(move |q| (p, q)))
+            .map(|(p, q)| a.made[p.0 as usize].distance(a.made[q.0 as usize]))
+            .fold(f64::INFINITY, f64::min);
+        assert!(closest > 0.03, "far apart: {closest}");
+    }
+    let [horse, snake] = ["horse", "snake"].map(|name| make(&recipe(name, 1_000, false)).unwrap());
+    assert!(correspondences(&horse, &snake, 10).is_empty());
+}
+
+#[test]
+fn the_same_recipe_gives_the_same_bytes() {
+    for name in ["horse", "snake"] {
+        let [a, b] = [0, 1].map(|_| make(&recipe(name, 2_000, false)).unwrap());
+        assert!(a.sequence == b.sequence && a.labels == b.labels && a.weights == b.weights);
+    }
+}
+
+#[test]
+fn recipes_are_brought_into_range() {
+    assert!(make(&recipe("unicorn", 1_000, false)).is_none());
+    let tiny = make(&Recipe { faces: 0, poses: 0, ..Recipe::default() }).unwrap();
+    assert_eq!(tiny.sequence.poses().len(), 1);
+    assert!(tiny.sequence.faces().len() > 800);
+}
