@@ -1,3 +1,4 @@
 //! From results to files: GLB, OBJ, reports.
 
 pub mod glb;
+pub mod labels;

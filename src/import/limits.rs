@@ -8,17 +8,17 @@ pub const LIMIT: u64 = if cfg!(target_arch = "wasm32") { 1 << 30 } else { 2 << 3
 /// What is left of the limit.
 #[derive(Clone, Debug)]
 pub struct Budget {
+    /// The file's name, for sentences.
+    name: String,
     left: u64,
-    limit: u64,
-}
-
-impl Default for Budget {
-    fn default() -> Self {
-        Self { left: LIMIT, limit: LIMIT }
-    }
 }
 
 impl Budget {
+    /// The whole limit, for the file called `name`.
+    pub fn new(name: &str) -> Self {
+        Self { name: name.to_owned(), left: LIMIT }
+    }
+
     /// Takes `count` items of `bytes` bytes for `what`, or says that there is not room.
     pub fn take(&mut self, count: u64, bytes: u64, what: &str) -> Result<(), ImportError> {
         match self.left.checked_sub(count.saturating_mul(bytes)) {
@@ -27,21 +27,23 @@ impl Budget {
                 Ok(())
             }
             None => Err(ImportError(format!(
-                "{what} has {count} entries, which do not fit into the {} allowed here; use a simpler mesh",
-                size(self.limit)
+                "{what} of {} has {count} entries, which do not fit into the {} allowed here; use a simpler mesh",
+                self.name,
+                size(LIMIT)
             ))),
         }
     }
 
     /// Checks that so many poses (the reference included) of so many vertices fit in; 24 bytes a vertex.
-    pub fn poses(&self, name: &str, vertices: u64, poses: u64) -> Result<(), ImportError> {
+    pub fn poses(&self, vertices: u64, poses: u64) -> Result<(), ImportError> {
         let needed = vertices.saturating_mul(poses).saturating_mul(24);
         if needed <= self.left {
             return Ok(());
         }
         Err(ImportError(format!(
-            "{name}: {poses} poses of {vertices} vertices need {}, more than the {} allowed here; take fewer poses a \
+            "{}: {poses} poses of {vertices} vertices need {}, more than the {} allowed here; take fewer poses a \
              second, or a simpler mesh",
+            self.name,
             size(needed),
             size(self.left)
         )))

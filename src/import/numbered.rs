@@ -32,7 +32,7 @@ pub fn open(files: &[(&File, Format)]) -> Result<Imported, ImportError> {
     if faces.is_empty() {
         return Err(ImportError(format!("{name} has no faces; Sinew needs a surface, not only points")));
     }
-    Budget::default().poses(name, reference.positions.len() as u64, files.len() as u64)?;
+    Budget::new(name).poses(reference.positions.len() as u64, files.len() as u64)?;
     note_polygons(&reference, &polygons, &mut warnings);
     let mut others = Vec::with_capacity(poses.len());
     let mut different = Vec::new();

@@ -6,7 +6,7 @@
 //! An error is one sentence for a person, thrown as a string.
 
 use crate::import::{self, Clip, File, Options};
-use crate::segmentation::{self, Parameters, Segmentation, Steps};
+use crate::segmentation::{Parameters, Segmentation, Segmenter, Steps};
 use crate::sequence::{Pose, Sequence, Sizes};
 use crate::warning::Warning;
 use crate::zoo::{self, Recipe};
@@ -25,6 +25,8 @@ type Reply = Result<JsValue, JsValue>;
 #[derive(Default)]
 pub struct Engine {
     sequence: Option<Sequence>,
+    /// The merge tree of the last segmentation, with the parameters that it was made with.
+    tree: Option<(Parameters, Segmenter)>,
 }
 
 /// What [`Engine::about`] says.
@@ -82,7 +84,7 @@ impl Engine {
         let imported = import::open(&files, &options).map_err(sentence)?;
         let sequence = rounded(&imported.sequence)?;
         let reply = describe(&sequence, &imported.clips, imported.clip, &imported.warnings)?;
-        self.sequence = Some(sequence);
+        self.replace(sequence);
         Ok(reply)
     }
 
@@ -93,7 +95,7 @@ impl Engine {
             zoo::make(&recipe).ok_or_else(|| sentence(format!("There is no creature called “{}”.", recipe.name)))?;
         let sequence = rounded(&creature.sequence)?;
         let reply = describe(&sequence, &[], None, &[])?;
-        self.sequence = Some(sequence);
+        self.replace(sequence);
         Ok(reply)
     }
 
@@ -114,14 +116,16 @@ impl Engine {
         if !polygons.is_undefined() {
             sequence = sequence.with_polygons(Uint32Array::from(polygons).to_vec()).map_err(sentence)?;
         }
-        self.sequence = Some(sequence);
+        self.replace(sequence);
         Ok(())
     }
 
     /// Segments what is open, with [`Parameters`] in their serde form; `progress` is called with the stage and the
     /// share that is done.
     pub fn segment(&mut self, parameters: JsValue, progress: &Function) -> Reply {
-        let result = self.segmented(&parsed(parameters)?, progress)?;
+        let parameters: Parameters = parsed(parameters)?;
+        self.tree = None;
+        let result = self.segmented(&parameters, progress)?;
         let reply = describe_parts(&result)?;
         describe_steps(&reply, &result.steps)?;
         put(&reply, "warnings", &plain(&result.warnings)?)?;
@@ -129,24 +133,37 @@ impl Engine {
         Ok(reply)
     }
 
-    /// Labels and parts for another number of parts, the other parameters being those of the last
-    /// [`Engine::segment`].
+    /// Labels and parts for another number of parts: at once, if the last segmentation had the same parameters.
     pub fn parts(&mut self, parameters: JsValue, count: usize, progress: &Function) -> Reply {
         let parameters = Parameters { parts: Some(count), ..parsed(parameters)? };
         describe_parts(&self.segmented(&parameters, progress)?)
     }
 
-    fn segmented(&self, parameters: &Parameters, progress: &Function) -> Result<Segmentation, JsValue> {
+    /// Cuts the merge tree, which is made first if there is none for these parameters.
+    fn segmented(&mut self, parameters: &Parameters, progress: &Function) -> Result<Segmentation, JsValue> {
+        let basis = Parameters { parts: None, ..parameters.clone() };
+        let tree = match self.tree.take() {
+            Some((made_with, tree)) if made_with == basis => tree,
+            _ => self.grow(&basis, progress)?,
+        };
+        let result = tree.segmentation(parameters.parts);
+        self.tree = Some((basis, tree));
+        Ok(result)
+    }
+
+    fn grow(&self, parameters: &Parameters, progress: &Function) -> Result<Segmenter, JsValue> {
         let mut observer = |stage: &'static str, done: f64| {
             // A page that no longer listens is no reason to fail: it ends the worker when it wants no answer.
             let _ = progress.call2(&JsValue::NULL, &stage.into(), &done.into());
             true
         };
-        segmentation::segment(self.open_sequence()?, parameters, &mut observer).map_err(sentence)
+        let sequence = self.sequence.as_ref().ok_or_else(|| sentence("Nothing is open yet."))?;
+        Segmenter::new(sequence, parameters, &mut observer).map_err(sentence)
     }
 
-    fn open_sequence(&self) -> Result<&Sequence, JsValue> {
-        self.sequence.as_ref().ok_or_else(|| sentence("Nothing is open yet."))
+    fn replace(&mut self, sequence: Sequence) {
+        self.sequence = Some(sequence);
+        self.tree = None;
     }
 }
 

@@ -60,7 +60,7 @@ fn locate<'a>(name: &str, uri: &str, files: &'a [File]) -> Result<Cow<'a, [u8]>,
             Ok(Cow::Owned(data))
         };
     }
-    let wanted = String::from_utf8_lossy(&percent_decode(uri)).into_owned();
+    let wanted = percent_decoded(uri);
     if let Some(file) = beside(name, &wanted, files) {
         return Ok(Cow::Borrowed(&file.bytes));
     }
@@ -99,6 +99,11 @@ fn normal_path(path: &str) -> Vec<String> {
 fn strip_prefix_ignoring_case<'s>(text: &'s str, prefix: &str) -> Option<&'s str> {
     let head = text.get(..prefix.len())?;
     head.eq_ignore_ascii_case(prefix).then(|| &text[prefix.len()..])
+}
+
+/// The file name that a relative address means: `My%20Fox.bin` is `My Fox.bin`.
+pub fn percent_decoded(uri: &str) -> String {
+    String::from_utf8_lossy(&percent_decode(uri)).into_owned()
 }
 
 /// Decodes `%41`; a `%` that begins no number stands for itself.

@@ -14,6 +14,7 @@ mod sample;
 mod shape;
 mod skin;
 
+pub use buffers::percent_decoded;
 pub use container::is_glb;
 pub use model::Model;
 pub use sample::open;

@@ -12,6 +12,7 @@ use crate::import::{Clip, File, ImportError};
 use crate::warning::Warning;
 use glam::{DAffine3, DVec3};
 use std::collections::BTreeMap;
+use std::collections::btree_map::Entry;
 
 /// A glTF file that can be posed at any time of any clip.
 #[derive(Clone, Debug)]
@@ -44,7 +45,7 @@ impl Model {
         let document = Document::read(&file.name, container.json, warnings)?;
         let buffers = Buffers::find(&file.name, &document, container.binary, files);
         let nodes = Nodes::read(&document, warnings)?;
-        let mut reader = Reader { document: &document, buffers: &buffers, budget: Budget::default(), warnings };
+        let mut reader = Reader { document: &document, buffers: &buffers, budget: Budget::new(&file.name), warnings };
         let skins = (0..document.skins.len()).map(|s| Skin::read(&document, &buffers, s)).collect::<Result<_, _>>();
         let skins: Vec<Skin> = if shows_skin(&document, &nodes) { skins? } else { Vec::new() };
         let targets = (0..document.nodes.len()).map(|n| reader.target_count(n)).collect::<Result<Vec<_>, _>>()?;
@@ -167,8 +168,8 @@ impl Model {
             let shape = &self.shapes[instance.shape];
             // The budget keeps the number of vertices far below 2³².
             let first = self.vertices as u32;
-            self.budget.take(shape.positions.len() as u64, 24, &self.name)?;
-            self.budget.take(shape.faces.len() as u64, 12, &self.name)?;
+            self.budget.take(shape.positions.len() as u64, 24, "the mesh")?;
+            self.budget.take(shape.faces.len() as u64, 12, "the mesh")?;
             self.faces.extend(shape.faces.iter().map(|face| face.map(|v| v + first)));
             self.vertices += shape.positions.len();
         }
@@ -249,35 +250,31 @@ impl Reader<'_, '_> {
             let entry = &self.document.nodes[node];
             let Some(mesh) = entry.mesh.map(|m| m.value()) else { continue };
             let skin = entry.skin.map(|s| s.value());
-            let joints = match skin.map(|s| skins.get(s)) {
-                Some(Some(skin)) => Some(skin.joints.len()),
-                Some(None) => return Skin::read(self.document, self.buffers, usize::MAX).map(|_| Default::default()),
+            let joints = match skin {
+                Some(skin) if skin >= skins.len() => {
+                    return Err(ImportError(format!(
+                        "{} of {} follows skin {skin}, which does not exist; the file is damaged, export it again",
+                        self.document.node_name(node),
+                        self.document.name
+                    )));
+                }
+                Some(skin) => Some(skins[skin].joints.len()),
                 None => None,
             };
             let primitives = self.document.meshes.get(mesh).map_or(0, |m| m.primitives.len());
             for number in 0..primitives {
-                let key = (mesh, number, joints);
-                if !known.contains_key(&key) {
-                    let shape = shape::read(
-                        self.document,
-                        self.buffers,
-                        mesh,
-                        number,
-                        joints,
-                        &mut self.budget,
-                        self.warnings,
-                    )?;
-                    known.insert(
-                        key,
-                        shape.map(|shape| {
-                            shapes.push(shape);
-                            shapes.len() - 1
-                        }),
-                    );
-                }
-                if let Some(Some(shape)) = known.get(&key) {
-                    instances.push(Instance { node, shape: *shape, skin });
-                }
+                let shape = match known.entry((mesh, number, joints)) {
+                    Entry::Occupied(entry) => *entry.get(),
+                    Entry::Vacant(entry) => {
+                        let primitive = (mesh, number);
+                        let (document, buffers) = (self.document, self.buffers);
+                        let read = shape::read(document, buffers, primitive, joints, &mut self.budget, self.warnings)?;
+                        let first_free = shapes.len();
+                        shapes.extend(read);
+                        *entry.insert((shapes.len() > first_free).then_some(first_free))
+                    }
+                };
+                instances.extend(shape.map(|shape| Instance { node, shape, skin }));
             }
         }
         Ok((shapes, instances))

@@ -7,6 +7,7 @@ use crate::mesh::weld::{compact, weld};
 use crate::sequence::{Pose, Sequence};
 use crate::warning::Warning;
 use glam::DVec3;
+use std::collections::BTreeMap;
 
 /// Vertices that differ by less than this share of the diagonal are welded: well above the rounding of 32-bit
 /// floats, well below anything modelled.
@@ -32,7 +33,7 @@ pub fn open(file: &File, files: &[File], options: &Options) -> Result<Imported, 
         None => Vec::new(),
     };
     // The poses, the reference, and the copies that welding makes.
-    model.budget.poses(model.name(), model.vertices() as u64, times.len() as u64 + 2)?;
+    model.budget.poses(model.vertices() as u64, times.len() as u64 + 2)?;
     let start = clip.and_then(|clip| model.motions().get(clip)).map_or(0.0, |m| m.start);
     let mut poses: Vec<Pose> = times
         .iter()
@@ -55,10 +56,35 @@ pub fn open(file: &File, files: &[File], options: &Options) -> Result<Imported, 
         weld_seams(&mut faces, &mut reference, &mut poses, &mut warnings);
     }
     drop_collapsed(&mut faces, &mut warnings);
+    if faces.is_empty() {
+        return Err(ImportError(format!(
+            "all triangles of {name} are collapsed to a point or a line; export it again"
+        )));
+    }
     let sequence = Sequence::new(short_name(&name), faces, reference, poses)
         .map_err(|error| ImportError(format!("{name}: {error}; the file is damaged, export it again")))?;
     let input_faces = sequence.faces().len();
-    Ok(Imported { sequence, clips, clip, input_faces, warnings })
+    Ok(Imported { sequence, clips, clip, input_faces, warnings: at_most_a_few(warnings) })
+}
+
+/// At most a few warnings of each kind, so that a strange file does not bury a person in them.
+fn at_most_a_few(warnings: Vec<Warning>) -> Vec<Warning> {
+    const FEW: usize = 4;
+    let mut seen: BTreeMap<&'static str, usize> = BTreeMap::new();
+    let mut kept = Vec::new();
+    for warning in warnings {
+        let count = seen.entry(warning.code).or_default();
+        *count += 1;
+        if *count <= FEW {
+            kept.push(warning);
+        }
+    }
+    for (code, more) in seen.into_iter().filter_map(|(code, count)| Some((code, count.checked_sub(FEW)?))) {
+        if more > 0 {
+            kept.push(Warning::new(code, format!("{more} more notes of the kind \"{code}\" are not listed.")));
+        }
+    }
+    kept
 }
 
 /// The last part of a path.

@@ -42,93 +42,166 @@ pub struct Influences {
     pub entries: Vec<(u32, f32)>,
 }
 
-/// Reads primitive `number` of mesh `mesh`; `None` for points and lines.
+/// Reads primitive `number` of mesh `mesh`; `None`, with a warning, for one that has no triangles.
 ///
 /// `joints` is the number of joints of the skin that it is bound to, if any.
 pub fn read(
     document: &Document,
     buffers: &Buffers,
-    mesh: usize,
-    number: usize,
+    (mesh, number): (usize, usize),
     joints: Option<usize>,
     budget: &mut Budget,
     warnings: &mut Vec<Warning>,
 ) -> Result<Option<Shape>, ImportError> {
     let whose = document.mesh_name(mesh);
     let Some(primitive) = document.meshes.get(mesh).and_then(|m| m.primitives.get(number)) else { return Ok(None) };
-    let left_out = |warnings: &mut Vec<Warning>, what: &str| {
-        warnings.push(Warning::new(
-            "primitive-left-out",
-            format!("Primitive {number} of {whose} {what}; it was left out."),
-        ));
-        Ok(None)
-    };
-    let Checked::Valid(mode) = primitive.mode else { return left_out(warnings, "is of an unknown kind") };
-    if matches!(mode, Mode::Points | Mode::Lines | Mode::LineLoop | Mode::LineStrip) {
-        return left_out(warnings, "is made of points or lines");
-    }
-    let Some(positions) = attribute(document, buffers, primitive, Semantic::Positions, &whose)? else {
-        return left_out(warnings, "has no positions");
-    };
-    positions.expect_shape(Type::Vec3)?;
-    let corners = corners(document, buffers, primitive, &whose, positions.len(), budget)?;
-    let (used, faces) = compact(triangles(mode, &corners), positions.len());
-    if faces.is_empty() {
-        return left_out(warnings, "has no triangle");
-    }
-    budget.take(used.len() as u64, 24, &whose)?;
-    let read_position = |&v: &u32| positions.numbers(v as usize).map(DVec3::from_array);
-    let shape = Shape {
-        positions: used.iter().map(read_position).collect::<Result<_, _>>()?,
-        faces,
-        targets: targets(document, buffers, primitive, &whose, &positions, &used, budget)?,
-        influences: match joints {
-            Some(joints) => influences(document, buffers, primitive, &whose, joints, &positions, &used, budget)?,
-            None => None,
+    let mut reader = Reader { document, buffers, primitive, whose: &whose, budget };
+    let why = match primitive.mode {
+        Checked::Invalid => "is of an unknown kind",
+        Checked::Valid(Mode::Points | Mode::Lines | Mode::LineLoop | Mode::LineStrip) => "is made of points or lines",
+        Checked::Valid(mode) => match reader.attribute(Semantic::Positions)? {
+            None => "has no positions",
+            Some(positions) => match reader.shape(mode, &positions, joints)? {
+                None => "has no triangle",
+                shape => return Ok(shape),
+            },
         },
     };
-    Ok(Some(shape))
+    let message = format!("Primitive {number} of {whose} {why}; it was left out.");
+    warnings.push(Warning::new("primitive-left-out", message));
+    Ok(None)
 }
 
-fn attribute<'a>(
-    document: &Document,
-    buffers: &'a Buffers,
-    primitive: &Primitive,
-    semantic: Semantic,
-    whose: &str,
-) -> Result<Option<Accessor<'a>>, ImportError> {
-    let purpose = format!("{} of {whose}", semantic.to_string());
-    match primitive.attributes.get(&Checked::Valid(semantic)) {
-        Some(index) => Accessor::open(document, buffers, index.value(), &purpose).map(Some),
-        None => Ok(None),
-    }
+/// A primitive and where its data are.
+struct Reader<'a> {
+    document: &'a Document,
+    buffers: &'a Buffers<'a>,
+    primitive: &'a Primitive,
+    /// Its mesh, for sentences.
+    whose: &'a str,
+    budget: &'a mut Budget,
 }
 
-/// The vertex numbers of the primitive in the order in which it names them.
-fn corners(
-    document: &Document,
-    buffers: &Buffers,
-    primitive: &Primitive,
-    whose: &str,
-    vertices: usize,
-    budget: &mut Budget,
-) -> Result<Vec<u32>, ImportError> {
-    let Some(index) = primitive.indices else {
-        budget.take(vertices as u64, 4, whose)?;
-        return Ok((0..vertices as u32).collect());
-    };
-    let indices = Accessor::open(document, buffers, index.value(), &format!("indices of {whose}"))?;
-    indices.expect_shape(Type::Scalar)?;
-    budget.take(indices.len() as u64, 4, whose)?;
-    let mut corners = Vec::with_capacity(indices.len());
-    for element in 0..indices.len() {
-        let [vertex] = indices.integers(element)?;
-        if vertex as usize >= vertices {
-            return Err(indices.wrong(&format!("names vertex {vertex}, but there are only {vertices} vertices")));
+impl<'a> Reader<'a> {
+    fn shape(&mut self, mode: Mode, positions: &Accessor, joints: Option<usize>) -> Result<Option<Shape>, ImportError> {
+        positions.expect_shape(Type::Vec3)?;
+        let corners = self.corners(positions.len())?;
+        let (used, faces) = compact(triangles(mode, &corners), positions.len());
+        if faces.is_empty() {
+            return Ok(None);
         }
-        corners.push(vertex);
+        self.budget.take(used.len() as u64, 24, self.whose)?;
+        let read_position = |&v: &u32| positions.numbers(v as usize).map(DVec3::from_array);
+        Ok(Some(Shape {
+            positions: used.iter().map(read_position).collect::<Result<_, _>>()?,
+            faces,
+            targets: self.targets(positions, &used)?,
+            influences: match joints {
+                Some(joints) => self.influences(joints, positions, &used)?,
+                None => None,
+            },
+        }))
     }
-    Ok(corners)
+
+    fn attribute(&self, semantic: Semantic) -> Result<Option<Accessor<'a>>, ImportError> {
+        let purpose = format!("{} of {}", semantic.to_string(), self.whose);
+        match self.primitive.attributes.get(&Checked::Valid(semantic)) {
+            Some(index) => Accessor::open(self.document, self.buffers, index.value(), &purpose).map(Some),
+            None => Ok(None),
+        }
+    }
+
+    /// The vertex numbers of the primitive in the order in which it names them.
+    fn corners(&mut self, vertices: usize) -> Result<Vec<u32>, ImportError> {
+        let Some(index) = self.primitive.indices else {
+            self.budget.take(vertices as u64, 4, self.whose)?;
+            return Ok((0..vertices as u32).collect());
+        };
+        let purpose = format!("indices of {}", self.whose);
+        let indices = Accessor::open(self.document, self.buffers, index.value(), &purpose)?;
+        indices.expect_shape(Type::Scalar)?;
+        self.budget.take(indices.len() as u64, 4, self.whose)?;
+        let mut corners = Vec::with_capacity(indices.len());
+        for element in 0..indices.len() {
+            let [vertex] = indices.integers(element)?;
+            if vertex as usize >= vertices {
+                return Err(indices.wrong(&format!("names vertex {vertex}, but there are only {vertices} vertices")));
+            }
+            corners.push(vertex);
+        }
+        Ok(corners)
+    }
+
+    fn targets(&mut self, positions: &Accessor, used: &[u32]) -> Result<Vec<Target>, ImportError> {
+        let mut targets = Vec::new();
+        for (number, entry) in self.primitive.targets.iter().flatten().enumerate() {
+            let mut target = Target::default();
+            if let Some(index) = entry.positions {
+                let purpose = format!("morph target {number} of {}", self.whose);
+                let offsets = Accessor::open(self.document, self.buffers, index.value(), &purpose)?;
+                offsets.expect_shape(Type::Vec3)?;
+                offsets.expect_len(positions.len(), positions.label())?;
+                if !offsets.is_zero() {
+                    for (new, &old) in used.iter().enumerate() {
+                        let offset = DVec3::from_array(offsets.numbers(old as usize)?);
+                        if offset != DVec3::ZERO {
+                            target.offsets.push((new as u32, offset.as_vec3()));
+                        }
+                    }
+                    target.offsets.shrink_to_fit();
+                    self.budget.take(target.offsets.len() as u64, 16, self.whose)?;
+                }
+            }
+            targets.push(target);
+        }
+        Ok(targets)
+    }
+
+    fn influences(
+        &mut self,
+        joint_count: usize,
+        positions: &Accessor,
+        used: &[u32],
+    ) -> Result<Option<Influences>, ImportError> {
+        let mut sets = Vec::new();
+        for set in 0.. {
+            let joints = self.attribute(Semantic::Joints(set))?;
+            let weights = self.attribute(Semantic::Weights(set))?;
+            let (Some(joints), Some(weights)) = (joints, weights) else { break };
+            for accessor in [&joints, &weights] {
+                accessor.expect_shape(Type::Vec4)?;
+                accessor.expect_len(positions.len(), positions.label())?;
+            }
+            sets.push((joints, weights));
+        }
+        if sets.is_empty() {
+            return Ok(None);
+        }
+        self.budget.take((sets.len() * used.len()) as u64, 32, self.whose)?;
+        let mut influences = Influences { starts: vec![0], entries: Vec::with_capacity(4 * used.len()) };
+        for &vertex in used {
+            let start = influences.entries.len();
+            let mut first = 0;
+            for (number, (joints, weights)) in sets.iter().enumerate() {
+                let named: [u32; 4] = joints.integers(vertex as usize)?;
+                let shares: [f64; 4] = weights.numbers(vertex as usize)?;
+                if number == 0 {
+                    first = named[0];
+                }
+                for (joint, share) in named.into_iter().zip(shares).filter(|(_, share)| *share > 0.0) {
+                    if joint as usize >= joint_count {
+                        return Err(joints.wrong(&format!(
+                            "names joint {joint} at vertex {vertex}, but the skin has only {joint_count} joints"
+                        )));
+                    }
+                    influences.entries.push((joint, share as f32));
+                }
+            }
+            normalise(&mut influences.entries, start, first.min(joint_count.saturating_sub(1) as u32));
+            influences.starts.push(influences.entries.len() as u32);
+        }
+        Ok(Some(influences))
+    }
 }
 
 fn triangles(mode: Mode, corners: &[u32]) -> Vec<[u32; 3]> {
@@ -168,89 +241,6 @@ fn compact(mut faces: Vec<[u32; 3]>, vertices: usize) -> (Vec<u32>, Vec<[u32; 3]
         }
     }
     (used, faces)
-}
-
-fn targets(
-    document: &Document,
-    buffers: &Buffers,
-    primitive: &Primitive,
-    whose: &str,
-    positions: &Accessor,
-    used: &[u32],
-    budget: &mut Budget,
-) -> Result<Vec<Target>, ImportError> {
-    let mut targets = Vec::new();
-    for (number, entry) in primitive.targets.iter().flatten().enumerate() {
-        let mut target = Target::default();
-        if let Some(index) = entry.positions {
-            let purpose = format!("morph target {number} of {whose}");
-            let offsets = Accessor::open(document, buffers, index.value(), &purpose)?;
-            offsets.expect_shape(Type::Vec3)?;
-            offsets.expect_len(positions.len(), positions.label())?;
-            if !offsets.is_zero() {
-                for (new, &old) in used.iter().enumerate() {
-                    let offset = DVec3::from_array(offsets.numbers(old as usize)?);
-                    if offset != DVec3::ZERO {
-                        target.offsets.push((new as u32, offset.as_vec3()));
-                    }
-                }
-                target.offsets.shrink_to_fit();
-                budget.take(target.offsets.len() as u64, 16, whose)?;
-            }
-        }
-        targets.push(target);
-    }
-    Ok(targets)
-}
-
-fn influences(
-    document: &Document,
-    buffers: &Buffers,
-    primitive: &Primitive,
-    whose: &str,
-    joint_count: usize,
-    positions: &Accessor,
-    used: &[u32],
-    budget: &mut Budget,
-) -> Result<Option<Influences>, ImportError> {
-    let mut sets = Vec::new();
-    for set in 0.. {
-        let joints = attribute(document, buffers, primitive, Semantic::Joints(set), whose)?;
-        let weights = attribute(document, buffers, primitive, Semantic::Weights(set), whose)?;
-        let (Some(joints), Some(weights)) = (joints, weights) else { break };
-        for accessor in [&joints, &weights] {
-            accessor.expect_shape(Type::Vec4)?;
-            accessor.expect_len(positions.len(), positions.label())?;
-        }
-        sets.push((joints, weights));
-    }
-    if sets.is_empty() {
-        return Ok(None);
-    }
-    budget.take((sets.len() * used.len()) as u64, 32, whose)?;
-    let mut influences = Influences { starts: vec![0], entries: Vec::with_capacity(4 * used.len()) };
-    for &vertex in used {
-        let start = influences.entries.len();
-        let mut first = 0;
-        for (number, (joints, weights)) in sets.iter().enumerate() {
-            let named: [u32; 4] = joints.integers(vertex as usize)?;
-            let shares: [f64; 4] = weights.numbers(vertex as usize)?;
-            if number == 0 {
-                first = named[0];
-            }
-            for (joint, share) in named.into_iter().zip(shares).filter(|(_, share)| *share > 0.0) {
-                if joint as usize >= joint_count {
-                    return Err(joints.wrong(&format!(
-                        "names joint {joint} at vertex {vertex}, but the skin has only {joint_count} joints"
-                    )));
-                }
-                influences.entries.push((joint, share as f32));
-            }
-        }
-        normalise(&mut influences.entries, start, first.min(joint_count.saturating_sub(1) as u32));
-        influences.starts.push(influences.entries.len() as u32);
-    }
-    Ok(Some(influences))
 }
 
 /// Makes the weights from `start` on add up to 1; a vertex without weights follows `first` alone.

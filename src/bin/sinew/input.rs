@@ -1,0 +1,90 @@
+//! What every command that reads a mesh shares: the files and how to read them.
+
+use crate::Refusal;
+use clap::{Args, ValueEnum};
+use sinew::import::{File, Imported, Options, Reference, Sampling, natural_order, open_in_order};
+use sinew::warning::Warning;
+use std::path::{Path, PathBuf};
+
+/// Files, and how to read them.
+#[derive(Args)]
+pub struct Input {
+    /// One glTF or GLB; or OBJ, OFF or PLY files, the first the reference pose, the others its poses
+    #[arg(required = true)]
+    input: Vec<PathBuf>,
+    /// The clip of a glTF, by name or by number from 0 (default: the first that moves the mesh)
+    #[arg(long)]
+    clip: Option<String>,
+    /// Poses a second of a glTF's clip
+    #[arg(long, default_value_t = 12.0, conflicts_with = "keys")]
+    fps: f64,
+    /// A pose at every key of the clip, instead of so many a second
+    #[arg(long)]
+    keys: bool,
+    /// The reference pose of a glTF
+    #[arg(long, value_enum, default_value_t = ReferenceArgument::Bind)]
+    reference: ReferenceArgument,
+    /// Keep vertices apart that agree in every pose (seams of texture and normals)
+    #[arg(long)]
+    no_weld: bool,
+}
+
+#[derive(Clone, Copy, ValueEnum)]
+enum ReferenceArgument {
+    /// The pose in which skins were bound
+    Bind,
+    /// Every node where the file puts it
+    Nodes,
+    /// The first pose of the clip
+    First,
+}
+
+impl Input {
+    /// Reads the files.
+    pub fn open(&self) -> Result<Imported, Refusal> {
+        let mut files = self.input.iter().map(|path| read(path)).collect::<Result<Vec<_>, _>>()?;
+        if let Some((_, poses)) = files.split_first_mut() {
+            natural_order(poses);
+        }
+        if let [document] = self.input.as_slice()
+            && document.extension().is_some_and(|end| end.eq_ignore_ascii_case("gltf"))
+        {
+            files.extend(beside(document)?);
+        }
+        let options = Options {
+            clip: self.clip.clone(),
+            sampling: if self.keys { Sampling::Keys } else { Sampling::Rate(self.fps) },
+            reference: match self.reference {
+                ReferenceArgument::Bind => Reference::Bind,
+                ReferenceArgument::Nodes => Reference::Nodes,
+                ReferenceArgument::First => Reference::FirstFrame,
+            },
+            weld: !self.no_weld,
+        };
+        Ok(open_in_order(&files, &options)?)
+    }
+}
+
+/// Prints warnings to standard error.
+pub fn print_warnings(warnings: &[Warning]) {
+    warnings.iter().for_each(|warning| eprintln!("note: {}", warning.message));
+}
+
+fn read(path: &Path) -> Result<File, Refusal> {
+    let name = path.display().to_string();
+    match std::fs::read(path) {
+        Ok(bytes) => Ok(File { name, bytes }),
+        Err(error) => Err(Refusal(format!("{name} cannot be read: {error}"))),
+    }
+}
+
+/// The buffers that a glTF names, as far as they are there: a missing one is the importer's to explain.
+fn beside(document: &Path) -> Result<Vec<File>, Refusal> {
+    let folder = document.parent().unwrap_or(Path::new(""));
+    let bytes = read(document)?.bytes;
+    let Ok(json) = serde_json::from_slice::<serde_json::Value>(&bytes) else { return Ok(Vec::new()) };
+    let buffers = json.get("buffers").and_then(|b| b.as_array()).into_iter().flatten();
+    let addresses = buffers.filter_map(|b| b.get("uri")?.as_str()).filter(|uri| !uri.starts_with("data:"));
+    let decoded = addresses.map(sinew::import::gltf::percent_decoded);
+    Ok(decoded.filter_map(|name| read(&folder.join(name)).ok()).collect())
+}

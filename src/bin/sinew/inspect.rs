@@ -1,0 +1,81 @@
+//! `sinew inspect`: what is in a file.
+
+use crate::Refusal;
+use crate::input::{Input, print_warnings};
+use clap::Args;
+use serde_json::{Value, json};
+use sinew::import::Imported;
+use sinew::mesh::pieces::{census, pieces};
+
+/// Arguments of `sinew inspect`.
+#[derive(Args)]
+pub struct Inspect {
+    #[command(flatten)]
+    input: Input,
+    /// Print the report as JSON
+    #[arg(long)]
+    json: bool,
+}
+
+impl Inspect {
+    /// Reads the input and prints what is in it.
+    pub fn run(&self) -> Result<(), Refusal> {
+        let imported = self.input.open()?;
+        if self.json {
+            println!("{:#}", report(&imported));
+        } else {
+            print(&imported);
+        }
+        Ok(())
+    }
+}
+
+fn report(imported: &Imported) -> Value {
+    let sequence = &imported.sequence;
+    let sizes = sequence.sizes();
+    let census = census(sequence.faces(), sizes.vertices);
+    json!({
+        "name": sequence.name(),
+        "vertices": sizes.vertices,
+        "faces": sizes.faces,
+        "input_faces": imported.input_faces,
+        "components": pieces(sequence.faces(), sizes.vertices).count,
+        "poses": sizes.poses,
+        "seconds": sequence.poses().last().map_or(0.0, |pose| pose.time),
+        "clips": imported.clips,
+        "clip": imported.clip,
+        "diagonal": sequence.diagonal(),
+        "boundary_edges": census.boundary_edges,
+        "nonmanifold_edges": census.nonmanifold_edges,
+        "collapsed_faces": census.collapsed_faces,
+        "unused_vertices": census.unused_vertices,
+        "warnings": imported.warnings,
+    })
+}
+
+fn print(imported: &Imported) {
+    let sequence = &imported.sequence;
+    let sizes = sequence.sizes();
+    let census = census(sequence.faces(), sizes.vertices);
+    println!("{}", sequence.name());
+    println!("  vertices    {}", sizes.vertices);
+    println!("  faces       {}", sizes.faces);
+    println!("  components  {}", pieces(sequence.faces(), sizes.vertices).count);
+    println!("  poses       {}", sizes.poses);
+    println!("  diagonal    {:.4}", sequence.diagonal());
+    for (number, clip) in imported.clips.iter().enumerate() {
+        let taken = if imported.clip == Some(number) { "  (taken)" } else { "" };
+        println!("  clip {number}      {} {:.2} s{taken}", clip.name, clip.seconds);
+    }
+    for (what, count) in [
+        ("edges with one face", census.boundary_edges),
+        ("edges with more than two faces", census.nonmanifold_edges),
+        ("faces that name a vertex twice", census.collapsed_faces),
+        ("vertices without a face", census.unused_vertices),
+    ] {
+        if count > 0 {
+            println!("  {count} {what}");
+        }
+    }
+    print_warnings(&imported.warnings);
+}

@@ -1,0 +1,52 @@
+//! The command line: the same engine, for batches and for measuring.
+
+mod input;
+mod inspect;
+mod output;
+mod segment;
+mod zoo;
+
+use clap::{Parser, Subcommand};
+use std::process::ExitCode;
+
+/// See how a mesh bends; make another one bend the same way.
+#[derive(Parser)]
+#[command(version)]
+struct Arguments {
+    #[command(subcommand)]
+    command: Command,
+}
+
+#[derive(Subcommand)]
+enum Command {
+    /// Sizes, connected pieces, poses, clips and what is odd about a mesh
+    Inspect(inspect::Inspect),
+    /// Cut an animated mesh into near-rigid parts
+    Segment(segment::Segment),
+    /// Make a creature
+    Zoo(zoo::Zoo),
+}
+
+/// One sentence for a person, with the exit status 2.
+pub struct Refusal(String);
+
+impl<E: std::error::Error> From<E> for Refusal {
+    fn from(error: E) -> Self {
+        Self(error.to_string())
+    }
+}
+
+fn main() -> ExitCode {
+    let result = match Arguments::parse().command {
+        Command::Inspect(command) => command.run(),
+        Command::Segment(command) => command.run(),
+        Command::Zoo(command) => command.run(),
+    };
+    match result {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(Refusal(why)) => {
+            eprintln!("sinew: {why}");
+            ExitCode::from(2)
+        }
+    }
+}

@@ -1,0 +1,154 @@
+//! The command line: reports, files, and the exit status 2 with one sentence for what cannot be used.
+#![cfg(feature = "cli")]
+
+mod gltf_maker;
+
+use gltf_maker::triangle;
+use serde_json::Value;
+use std::path::{Path, PathBuf};
+use std::process::{Command, Output};
+
+/// A folder for one test's files.
+fn folder(test: &str) -> PathBuf {
+    let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join("command_line").join(test);
+    std::fs::create_dir_all(&folder).unwrap();
+    folder
+}
+
+fn sinew(folder: &Path, arguments: &[&str]) -> Output {
+    Command::new(env!("CARGO_BIN_EXE_sinew")).current_dir(folder).args(arguments).output().unwrap()
+}
+
+fn json(bytes: &[u8]) -> Value {
+    serde_json::from_slice(bytes).unwrap()
+}
+
+/// Two quads and a triangle in a row; the second pose bends the last two faces up.
+fn strip(folder: &Path) {
+    let faces = "f 1 2 5 4\nf 2 3 6 5\nf 3 7 6\n";
+    let vertices = |z: f64| format!("v 0 0 0\nv 1 0 0\nv 2 0 {z}\nv 0 1 0\nv 1 1 0\nv 2 1 {z}\nv 3 0.5 {z}\n");
+    std::fs::write(folder.join("rest.obj"), vertices(0.0) + faces).unwrap();
+    std::fs::write(folder.join("pose.2.obj"), vertices(0.5) + faces).unwrap();
+    std::fs::write(folder.join("pose.10.obj"), vertices(1.0) + faces).unwrap();
+}
+
+/// A triangle that slides, as GLB.
+fn slider(folder: &Path) {
+    let mut maker = triangle();
+    maker.animate("translation", "LINEAR", &[0.0, 2.0], &[0., 0., 0., 1., 0., 0.], "VEC3");
+    maker.json["animations"][0]["name"] = "slide".into();
+    std::fs::write(folder.join("slider.glb"), maker.glb()).unwrap();
+    let (document, buffer) = maker.split("the%20data.bin");
+    std::fs::write(folder.join("slider.gltf"), document).unwrap();
+    std::fs::write(folder.join("the data.bin"), buffer).unwrap();
+}
+
+#[test]
+fn inspect_counts() {
+    let folder = folder("inspect");
+    strip(&folder);
+    // The poses in any order: the first argument is the reference.
+    let output = sinew(&folder, &["inspect", "rest.obj", "pose.10.obj", "pose.2.obj", "--json"]);
+    assert!(output.status.success());
+    let report = json(&output.stdout);
+    for (key, value) in [("vertices", 7), ("faces", 5), ("input_faces", 3), ("components", 1), ("poses", 2)] {
+        assert_eq!(report[key], value, "{key}");
+    }
+    for (key, value) in [("boundary_edges", 7), ("nonmanifold_edges", 0), ("collapsed_faces", 0)] {
+        assert_eq!(report[key], value, "{key}");
+    }
+    assert_eq!(report["clips"], serde_json::json!([]));
+    assert!((report["diagonal"].as_f64().unwrap() - 10_f64.sqrt()).abs() < 1e-12);
+    let text = sinew(&folder, &["inspect", "rest.obj"]);
+    assert!(text.status.success());
+    assert!(String::from_utf8_lossy(&text.stdout).contains("vertices    7"));
+    assert!(String::from_utf8_lossy(&text.stderr).contains("stands still"));
+}
+
+#[test]
+fn inspect_samples_clips() {
+    let folder = folder("clips");
+    slider(&folder);
+    for input in ["slider.glb", "slider.gltf"] {
+        for (arguments, poses) in [(&[][..], 25), (&["--fps", "2"], 5), (&["--keys"], 2), (&["--clip", "slide"], 25)] {
+            let output = sinew(&folder, &[&["inspect", input, "--json"], arguments].concat());
+            assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+            let report = json(&output.stdout);
+            assert_eq!(report["poses"], poses, "{arguments:?}");
+            assert_eq!(report["clips"][0]["name"], "slide");
+            assert_eq!(report["clips"][0]["seconds"], 2.0);
+        }
+    }
+}
+
+#[test]
+fn segment_writes_labels_and_a_report() {
+    let folder = folder("segment");
+    strip(&folder);
+    let arguments =
+        ["segment", "rest.obj", "pose.2.obj", "pose.10.obj", "--labels", "labels.txt", "--report", "report.json"];
+    let output = sinew(&folder, &arguments);
+    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+    let labels = std::fs::read_to_string(folder.join("labels.txt")).unwrap();
+    let report = json(&std::fs::read(folder.join("report.json")).unwrap());
+    let parts = report["parts"].as_u64().unwrap();
+    // One label for each of the three faces of the file, though the sequence has five triangles.
+    assert_eq!(labels.lines().count(), 3);
+    assert!(labels.lines().all(|label| label.parse::<u64>().unwrap() < parts));
+    assert_eq!(report["part_list"].as_array().unwrap().len() as u64, parts);
+    assert_eq!((&report["faces"], &report["poses"]), (&Value::from(5), &Value::from(2)));
+    for key in ["rigid_residual", "residual_before_smoothing", "epsilon", "gamma"] {
+        assert!(report[key].is_number(), "{key}");
+    }
+    assert!(report["seconds"]["total"].as_f64().unwrap() >= report["seconds"]["import"].as_f64().unwrap());
+    assert_eq!(report["parameters"]["method"], "tree");
+}
+
+#[test]
+fn parameters_reach_the_report() {
+    let folder = folder("parameters");
+    strip(&folder);
+    let arguments = ["segment", "rest.obj", "pose.2.obj", "--report", "report.json", "--paper", "--delta", "0.2"];
+    let more = ["--epsilon", "0.5", "--gamma", "0.9", "--alpha", "0.05", "--min-area", "0.01", "--smoothing", "none"];
+    assert!(sinew(&folder, &[&arguments[..], &more].concat()).status.success());
+    let parameters = &json(&std::fs::read(folder.join("report.json")).unwrap())["parameters"];
+    for (key, value) in [("delta", 0.2), ("epsilon", 0.5), ("gamma", 0.9), ("alpha", 0.05), ("min-area", 0.01)] {
+        assert_eq!(parameters[key], value, "{key}");
+    }
+    assert_eq!((&parameters["method"], &parameters["smoothing"]), (&"paper".into(), &"none".into()));
+}
+
+#[test]
+fn what_cannot_be_used_is_one_sentence_and_status_2() {
+    let folder = folder("refusals");
+    strip(&folder);
+    slider(&folder);
+    std::fs::write(folder.join("bad.obj"), "v 0 0 0\nf 1 2 3\n").unwrap();
+    std::fs::write(folder.join("bad.glb"), "glTF").unwrap();
+    for (arguments, part) in [
+        (&["inspect", "nothing.obj"][..], "nothing.obj cannot be read"),
+        (&["inspect", "bad.obj"], "names vertex 2"),
+        (&["inspect", "bad.glb"], "cut short"),
+        (&["inspect", "slider.glb", "--clip", "fly"], "no clip \"fly\""),
+        (&["inspect", "slider.glb", "--fps", "0"], "above 0"),
+        (&["segment", "rest.obj", "bad.obj"], "bad.obj"),
+        (&["zoo", "unicorn"], "there is no unicorn"),
+    ] {
+        let output = sinew(&folder, arguments);
+        let why = String::from_utf8_lossy(&output.stderr);
+        assert_eq!(output.status.code(), Some(2), "{arguments:?}");
+        assert!(why.starts_with("sinew: ") && why.trim_end().lines().count() == 1 && why.contains(part), "{why}");
+        assert!(output.stdout.is_empty());
+    }
+    for arguments in [&["segment"][..], &["segment", "rest.obj", "--parts", "0"], &["dance"], &["zoo"]] {
+        assert_eq!(sinew(&folder, arguments).status.code(), Some(2), "{arguments:?}");
+    }
+}
+
+#[test]
+fn the_zoo_is_listed() {
+    let output = sinew(Path::new("."), &["zoo", "--list"]);
+    assert!(output.status.success());
+    let listed: Vec<String> = String::from_utf8(output.stdout).unwrap().lines().map(Into::into).collect();
+    assert_eq!(listed, sinew::zoo::NAMES);
+}
