@@ -82,9 +82,9 @@ impl Theme {
             [oklch(0.66, 0.2, 36.0), oklch(0.6, 0.15, 255.0), oklch(0.82, 0.16, 95.0), oklch(0.62, 0.2, 350.0)];
         let light = Vec4::new;
         Self {
-            key_light: light(0.70, 0.685, 0.66, if dark { 0.35 } else { 0.16 }),
-            sky_light: if dark { light(0.30, 0.31, 0.33, 0.0) } else { light(0.36, 0.37, 0.39, 0.0) },
-            ground_light: if dark { light(0.20, 0.185, 0.165, 0.0) } else { light(0.34, 0.315, 0.28, 0.0) },
+            key_light: light(0.88, 0.86, 0.83, if dark { 0.35 } else { 0.16 }),
+            sky_light: if dark { light(0.30, 0.31, 0.33, 0.0) } else { light(0.37, 0.38, 0.40, 0.0) },
+            ground_light: if dark { light(0.20, 0.185, 0.165, 0.0) } else { light(0.33, 0.30, 0.265, 0.0) },
             back_middle: with(middle, 0.0),
             back_rim: with(rim, shadows),
             line_colour: with(oklch(0.22, 0.02, 50.0), 0.88),
@@ -112,4 +112,46 @@ pub fn light_map(towards: Vec3, centre: Vec3, radius: f32) -> Mat4 {
     let row = |axis: Vec3, scale: f32, shift: f32| (axis * scale).extend(shift - axis.dot(centre) * scale);
     // Depth 0 nearest to the light, 1 farthest.
     Mat4::from_cols(row(right, s, 0.0), row(up, s, 0.0), row(back, -0.5 * s, 0.5), Vec4::W).transpose()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_shaders_struct_has_as_many_floats() {
+        let source = include_str!("gpu/stage.wgsl");
+        let body = source.split("struct Stage {").nth(1).and_then(|s| s.split('}').next()).unwrap();
+        let size = |line: &str| match line.split(':').nth(1).map(str::trim) {
+            Some(t) if t.starts_with("mat4x4f") => 16,
+            Some(t) if t.starts_with("vec4f") => 4,
+            Some(t) if t.starts_with("array<vec4f, 5>") => 20,
+            _ => 0,
+        };
+        assert_eq!(body.lines().map(size).sum::<usize>(), FLOATS);
+    }
+
+    #[test]
+    fn no_nan_reaches_the_shaders() {
+        let frame =
+            Frame { eye: Vec4::splat(f32::NAN), view: Mat4::from_cols_array(&[f32::INFINITY; 16]), ..Frame::default() };
+        assert!(frame.floats().iter().all(|x| x.is_finite()));
+    }
+
+    #[test]
+    fn the_light_sees_the_whole_ball() {
+        let (centre, radius, towards) = (Vec3::new(3.0, 1.0, -2.0), 2.5, Vec3::new(-0.5, 1.0, 0.3).normalize());
+        let map = light_map(towards, centre, radius);
+        for p in [Vec3::X, Vec3::Y, Vec3::Z, -Vec3::X, -Vec3::Y, -Vec3::Z, towards, -towards] {
+            let at = map.project_point3(centre + p * radius);
+            assert!(at.x.abs() <= 1.0 && at.y.abs() <= 1.0 && (0.0..=1.0).contains(&at.z), "{at}");
+        }
+        let depth = |p: Vec3| map.project_point3(p).z;
+        assert!(depth(centre + towards) < depth(centre - towards));
+    }
+
+    #[test]
+    fn themes_differ() {
+        assert!(Theme::new(true).back_middle.x < 0.2 && Theme::new(false).back_middle.x > 0.7);
+    }
 }

@@ -10,9 +10,9 @@ use super::colour::{Srgb, least_distance, oklch};
 /// Number of hues around the circle.
 const HUES: usize = 12;
 /// Lightnesses that the hues are offered in.
-const LIGHTNESS: [f32; 3] = [0.74, 0.64, 0.83];
+const LIGHTNESS: [f32; 3] = [0.75, 0.67, 0.83];
 /// Chroma of every colour.
-const CHROMA: f32 = 0.118;
+const CHROMA: f32 = 0.108;
 /// Where the hues begin, degrees: a warm coral.
 const FIRST_HUE: f32 = 32.0;
 /// Two neighbours at least this far apart (OKLab) are told apart with ease.
@@ -101,7 +101,7 @@ impl Palette {
             let clear = self.clearance(slot, neighbours, slots).min(CLEAR) / CLEAR;
             let others = slots.iter().flatten().map(|&o| self.between(slot, o)).fold(0.25, f32::min);
             let again = used[slot] as f32;
-            4.0 * clear + 1.5 * others.min(0.25) / 0.25 - 0.5 * again - 0.15 * (slot / HUES) as f32
+            4.0 * clear + 1.5 * others.min(0.25) / 0.25 - 0.5 * again - 0.3 * (slot / HUES) as f32
         };
         let mut best = (0, f32::NEG_INFINITY);
         for slot in 0..self.len() {

@@ -10,7 +10,7 @@ use glam::Vec3;
 
 /// Direction to the key light in the camera's horizontal axes: from the left, from above, from the front. The light
 /// turns with the camera, as if the figure stood on a turntable.
-const KEY: Vec3 = Vec3::new(-0.5, 1.0, 0.5);
+const KEY: Vec3 = Vec3::new(-0.55, 1.0, 0.7);
 
 /// Everything that a picture is made of.
 #[derive(Clone, Debug)]
@@ -278,7 +278,7 @@ impl Stage {
         let (near, far) = camera.range(ball);
         let (cx, cy) = self.window.centre();
         let level = right.cross(Vec3::Y);
-        let key = (right * KEY.x + Vec3::Y * KEY.y - level * KEY.z).normalize();
+        let key = (right * KEY.x + Vec3::Y * KEY.y + level * KEY.z).normalize();
         let floor = self.whole().low.y;
         // The middle between the figure and its shadow.
         let middle = ball.centre - Vec3::new(key.x, 0.0, key.z) / key.y * (0.5 * (ball.centre.y - floor));
@@ -299,5 +299,78 @@ impl Stage {
             moment: glam::Vec4::new(moment.part, self.hovered.map_or(-1.0, |f| f as f32), label, 1.0 / 255.0),
             theme: Theme::new(self.dark),
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A tetrahedron that rises by 1 a pose.
+    fn stage() -> Stage {
+        let corners = [[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
+        let mut stage = Stage::default();
+        stage.set_window(800.0, 600.0, 2.0);
+        stage.set_motion(Motion::new(&[0, 2, 1, 0, 1, 3, 0, 3, 2, 1, 2, 3], corners.as_flattened()).unwrap());
+        let pose = |k: i32| corners.iter().flat_map(move |c| [c[0], c[1] + k as f32, c[2]]);
+        stage.set_poses(&(0..3).flat_map(pose).collect::<Vec<f32>>()).unwrap();
+        stage
+    }
+
+    #[test]
+    fn a_framed_figure_is_picked_where_it_is_drawn() {
+        let mut stage = stage();
+        for time in [-1.0, 0.0, 1.5] {
+            stage.set_time(time);
+            stage.frame_all();
+            let shift = Vec3::Y * time.max(0.0);
+            let middle = Vec3::splat(1.0 / 3.0) + shift;
+            let at = stage.frame().view.project_point3(middle);
+            let hit = stage.pick((at.x + 1.0) * 400.0, (1.0 - at.y) * 300.0).unwrap();
+            assert_eq!(hit.face, 3);
+            assert!(hit.point.distance(middle) < 1e-3);
+            assert_eq!(stage.pick(1.0, 1.0), None);
+        }
+    }
+
+    #[test]
+    fn only_changes_make_the_picture_stale() {
+        let mut stage = stage();
+        stage.take_stale();
+        stage.set_time(-1.0);
+        stage.set_dark(false);
+        stage.hover(None);
+        stage.set_insets([0.0; 4]);
+        assert!(!stage.stale().picture);
+        stage.set_time(0.5);
+        assert_eq!(stage.take_stale(), Stale { surface: false, paint: false, picture: true });
+        stage.paint_parts(&[0, 0, 1, 1], 2).unwrap();
+        assert!(stage.stale().paint && stage.stale().picture);
+    }
+
+    #[test]
+    fn the_ground_is_the_lowest_point_of_the_motion() {
+        let mut stage = stage();
+        stage.set_time(2.0);
+        assert_eq!(stage.frame().ground.y, 0.0);
+        assert!(stage.frame().floats().iter().all(|x| x.is_finite()));
+    }
+
+    #[test]
+    fn an_empty_stage_has_a_frame() {
+        let mut stage = Stage::default();
+        stage.set_window(f32::NAN, 0.0, -1.0);
+        stage.frame_all();
+        assert!(stage.frame().floats().iter().all(|x| x.is_finite()));
+        assert!(stage.words().is_empty());
+        assert_eq!(stage.pick(0.0, 0.0), None);
+    }
+
+    #[test]
+    fn shapes_have_a_normal_for_each_drawn_vertex() {
+        let mut stage = stage();
+        let (surface, positions, normals) = stage.shape(2);
+        assert_eq!((positions.len(), normals.len()), (4, surface.vertex.len()));
+        assert_eq!(stage.shape(99).2.len(), 0);
     }
 }

@@ -148,7 +148,7 @@ fn from_corner(b: f32, c: f32, gb: vec2f, gc: vec2f) -> f32 {
 }
 
 @fragment
-fn picture_fragment(in: Seen, @builtin(front_facing) front: bool) -> @location(0) vec4f {
+fn picture_fragment(in: Seen) -> @location(0) vec4f {
     let dx = dpdx(in.weights);
     let dy = dpdy(in.weights);
     let pixel = in.position.xy;
@@ -196,8 +196,10 @@ fn picture_fragment(in: Seen, @builtin(front_facing) front: bool) -> @location(0
     let wire = clamp(stage.lines.y + 0.5 - wire_far, 0.0, 1.0) * stage.lines.w * smoothstep(1.5, 7.0, height);
 
     // Light.
-    var n = normalize(in.normal + vec3f(0.0, 1e-9, 0.0)) * select(-1.0, 1.0, front);
+    var n = normalize(in.normal + vec3f(0.0, 1e-9, 0.0));
     let towards = normalize(stage.eye.xyz - in.world);
+    // Seen from inside. A back face that peeps over the silhouette keeps its normal, or the outline would be dotted.
+    n *= select(1.0, -1.0, dot(n, towards) < -0.25);
     let depth = (dot(stage.eye.xyz - in.world, stage.back.xyz) - stage.right.w) / (stage.up.w - stage.right.w);
     let hollow = open(pixel, depth);
     let wrapped = clamp((dot(n, stage.key.xyz) + 0.3) / 1.3, 0.0, 1.0);
@@ -237,7 +239,7 @@ fn studio_fragment(in: Screen) -> @location(0) vec4f {
         if max(abs(place.x), abs(place.y)) < 1.0 {
             let s = textureSampleLevel(ground_map, ground_sampler, place * vec2f(0.5, -0.5) + 0.5, 0.0);
             let rim = smoothstep(1.0, 0.7, length(place));
-            let dark = (1.0 - 0.55 * s.x) * (1.0 - 0.4 * s.y) * (1.0 - 0.38 * s.z);
+            let dark = (1.0 - 0.6 * s.x) * (1.0 - 0.5 * s.y) * (1.0 - 0.45 * s.z);
             // Seen from very low, the ground is a line: the shadow fades.
             let grazing = smoothstep(0.0, 0.06, -ray.y / length(ray));
             colour *= mix(vec3f(1.0), pow(vec3f(dark), vec3f(0.92, 1.0, 1.06)), rim * grazing * stage.back_rim.w);
