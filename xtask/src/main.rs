@@ -4,12 +4,14 @@
 //! This program runs natively only, so it may use the clock that the crate itself must not.
 #![allow(clippy::disallowed_types, reason = "runs natively only")]
 
+mod bench;
 mod bundle;
 mod dist;
 mod serve;
 mod server;
 mod setup;
 mod shell;
+mod test;
 
 use std::process::ExitCode;
 
@@ -19,6 +21,9 @@ cargo xtask COMMAND
   build [--dev]            the page, as a folder of static files: dist/
   serve [--dev] [--port N] [--no-build]
                            build, then serve dist/ on 127.0.0.1 (8080, or the next free port)
+  test                     everything: format, lints, documentation, native tests, tests as wasm in a browser,
+                           and the built page in a browser on WebGPU and on WebGL2
+  bench [--page] [-- ...]  the algorithms natively, or with --page the page in a browser
 
   --dev                    built fast for working on it: little optimisation, checks on, no size budget";
 
@@ -51,6 +56,16 @@ fn run(arguments: &[String]) -> anyhow::Result<()> {
             options.finish()?;
             serve::serve(dev, no_build, port)
         }
+        "test" => {
+            options.finish()?;
+            test::test()
+        }
+        "bench" => {
+            let page = options.flag("--page");
+            let passed_on = options.after("--");
+            options.finish()?;
+            bench::bench(page, &passed_on)
+        }
         "help" | "--help" | "-h" => {
             println!("{HELP}");
             Ok(())
@@ -79,6 +94,13 @@ impl Options {
         let Some(value) = value else { anyhow::bail!("{name} needs a number after it") };
         self.rest.drain(at..=at + 1);
         Ok(Some(value))
+    }
+
+    /// What follows a `--`, for another program.
+    fn after(&mut self, mark: &str) -> Vec<String> {
+        let Some(at) = self.rest.iter().position(|argument| argument == mark) else { return Vec::new() };
+        let after = self.rest.split_off(at);
+        after.into_iter().skip(1).collect()
     }
 
     /// Nothing may be left.

@@ -35,6 +35,13 @@ impl Server {
         Ok(format!("http://{}{}", self.listener.local_addr()?, self.prefix))
     }
 
+    /// Answers as long as this program runs, and returns the address.
+    pub fn run_behind(self) -> Result<String> {
+        let address = self.address()?;
+        std::thread::spawn(|| self.run());
+        Ok(address)
+    }
+
     /// Answers for ever, each connection on its own thread.
     pub fn run(self) {
         let (folder, prefix) = (std::sync::Arc::new(self.folder), std::sync::Arc::new(self.prefix));

@@ -2,6 +2,7 @@
 
 use crate::shell;
 use anyhow::{Context, Result, bail};
+use std::path::PathBuf;
 
 /// The target of both bundles.
 pub const WASM: &str = "wasm32-unknown-unknown";
@@ -33,6 +34,54 @@ pub fn wasm_bindgen_version() -> Result<()> {
         );
     }
     Ok(())
+}
+
+/// The browser and its driver, for tests.
+pub struct Browser {
+    /// Chromium, or a browser of its family.
+    pub chromium: PathBuf,
+    /// What starts it for wasm-bindgen's tests.
+    pub driver: PathBuf,
+}
+
+/// Finds Chromium and its driver, or installs them where that is ours to do.
+pub fn browser() -> Result<Browser> {
+    if let Some(browser) = find_browser() {
+        return Ok(browser);
+    }
+    if on_path(&["apt-get"]).is_some() && is_root() {
+        println!("installing chromium and chromium-driver");
+        for arguments in [&["update"][..], &["install", "-y", "--no-install-recommends", "chromium", "chromium-driver"]]
+        {
+            let mut apt = shell::program("apt-get");
+            apt.args(arguments).env("DEBIAN_FRONTEND", "noninteractive");
+            shell::run(apt)?;
+        }
+    }
+    find_browser().context("the tests need Chromium and its driver: install your system's packages `chromium` and `chromium-driver` (or Chrome and `chromedriver`), or name them in the variables CHROMIUM and CHROMEDRIVER")
+}
+
+fn find_browser() -> Option<Browser> {
+    let named = |variable: &str| std::env::var_os(variable).map(PathBuf::from);
+    let names = ["chromium", "chromium-browser", "google-chrome", "google-chrome-stable", "chrome"];
+    Some(Browser {
+        chromium: named("CHROMIUM").or_else(|| on_path(&names))?,
+        driver: named("CHROMEDRIVER").or_else(|| on_path(&["chromedriver"]))?,
+    })
+}
+
+/// The first of some programs that is on the path.
+fn on_path(names: &[&str]) -> Option<PathBuf> {
+    let path = std::env::var_os("PATH")?;
+    let folders: Vec<PathBuf> = std::env::split_paths(&path).collect();
+    let candidates = names.iter().flat_map(|name| folders.iter().map(move |folder| folder.join(name)));
+    candidates.into_iter().find(|program| program.is_file())
+}
+
+fn is_root() -> bool {
+    let mut id = shell::program("id");
+    id.arg("-u");
+    shell::output(id).is_ok_and(|user| user == "0")
 }
 
 /// The version of a package in the text of a Cargo.lock.

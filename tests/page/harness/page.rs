@@ -137,7 +137,15 @@ impl Page {
 
     /// Lets the page run for some seconds.
     pub fn rest(&mut self, seconds: f64) {
-        std::thread::sleep(Duration::from_secs_f64(seconds));
+        let end = clock::seconds() + seconds;
+        loop {
+            // Not a plain sleep: a worker that starts meanwhile waits until it is listened to.
+            let left = end - clock::seconds();
+            if left <= 0.0 {
+                return;
+            }
+            self.listen(left.min(0.05));
+        }
     }
 
     /// Drags files from outside the browser onto the middle of the page and drops them there.
@@ -268,7 +276,7 @@ impl Page {
     /// The problems so far: everything on the console that is an error, everything uncaught or refused, and every
     /// request to another host.
     pub fn problems(&mut self) -> Vec<String> {
-        self.listen();
+        self.listen(0.0);
         let expected = |problem: &String| !self.expected.iter().any(|words| problem.contains(words));
         self.problems.iter().filter(|problem| expected(problem)).cloned().collect()
     }
@@ -301,7 +309,7 @@ impl Page {
         let parameters = json!({ "expression": expression, "awaitPromise": true, "returnByValue": true });
         let session = self.session.clone();
         let answer = self.browser().try_call("Runtime.evaluate", parameters, Some(&session), seconds);
-        self.listen();
+        self.listen(0.0);
         let mut answer = answer?;
         match answer.get("exceptionDetails") {
             Some(details) => Err(exception(details)),
@@ -318,9 +326,9 @@ impl Page {
         self.browsers.get(self.backend)
     }
 
-    /// Sorts what has happened into problems and the rest.
-    fn listen(&mut self) {
-        for event in self.browser().events(0.0) {
+    /// Sorts what has happened, or happens first within some seconds, into problems and the rest.
+    fn listen(&mut self, seconds: f64) {
+        for event in self.browser().events(seconds) {
             // What comes from a tab closed before is not ours.
             let ours = event["sessionId"].as_str().is_some_and(|session| self.sessions.contains(session));
             let parameters = &event["params"];

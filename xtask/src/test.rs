@@ -1,0 +1,210 @@
+//! `cargo xtask test`: everything that must hold, one step after the other, up to the first that fails.
+//!
+//! The order is by how soon a step can fail. What steps compile is shared as far as it goes: lints and documentation
+//! use the same metadata, the browser's wasm tests the same development profile as `build --dev`.
+
+use crate::server::Server;
+use crate::setup::{self, WASM};
+use crate::{bundle, shell};
+use anyhow::{Context, Result, bail};
+use std::io::{BufRead, BufReader, Write};
+use std::process::{Command, Stdio};
+use std::time::Instant;
+
+/// Tests counted from what the test programs print.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+struct Tally {
+    passed: usize,
+    failed: usize,
+    ignored: usize,
+}
+
+impl Tally {
+    fn add(&mut self, other: Self) {
+        self.passed += other.passed;
+        self.failed += other.failed;
+        self.ignored += other.ignored;
+    }
+}
+
+/// A step: what it is called, and what it does. A step with tests says how many; any other counts as one.
+type Step = (&'static str, fn() -> Result<Tally>);
+
+const STEPS: [Step; 8] = [
+    ("format", format),
+    ("lints, native", lint_native),
+    ("lints, wasm32", lint_wasm),
+    ("documentation", document),
+    ("tests, native", test_native),
+    ("tests as wasm, in a page and in a worker", test_wasm),
+    ("build of the page", build),
+    ("the page in Chromium, on WebGPU and on WebGL2", test_page),
+];
+
+/// Runs all the steps, prints how long each took, and ends with one line of numbers.
+pub fn test() -> Result<()> {
+    let start = Instant::now();
+    setup::wasm_target()?;
+    setup::wasm_bindgen_version()?;
+    setup::browser()?;
+    let mut total = Tally::default();
+    let mut times = Vec::new();
+    let mut failure = None;
+    for (number, (name, step)) in STEPS.iter().enumerate() {
+        println!("\n== {} of {}: {name}", number + 1, STEPS.len());
+        let begin = Instant::now();
+        let result = step();
+        times.push((name, begin.elapsed().as_secs_f64(), result.is_ok()));
+        match result {
+            Ok(tally) => total.add(tally),
+            Err(error) => {
+                total.add(error.downcast_ref().map_or(Tally { failed: 1, ..Tally::default() }, |Failed(tally)| *tally));
+                failure = Some(error.context(format!("{name} failed")));
+                break;
+            }
+        }
+    }
+    println!();
+    for (name, seconds, passed) in &times {
+        println!("{} {seconds:>7.1} s  {name}", if *passed { "ok    " } else { "FAILED" });
+    }
+    for (name, _) in &STEPS[times.len()..] {
+        println!("not run             {name}");
+    }
+    println!("all in {:.1} s", start.elapsed().as_secs_f64());
+    println!("{} passed, {} failed, {} skipped", total.passed, total.failed, total.ignored);
+    failure.map_or(Ok(()), Err)
+}
+
+/// A test program that found failures, with its numbers.
+#[derive(Debug)]
+struct Failed(Tally);
+
+impl std::fmt::Display for Failed {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        write!(f, "{} of {} tests failed", self.0.failed, self.0.failed + self.0.passed)
+    }
+}
+
+impl std::error::Error for Failed {}
+
+/// A step that passes or fails as a whole.
+fn check(command: Command) -> Result<Tally> {
+    shell::run(command)?;
+    Ok(Tally { passed: 1, ..Tally::default() })
+}
+
+fn format() -> Result<Tally> {
+    check(shell::cargo(["fmt", "--all", "--check"]))
+}
+
+fn lint_native() -> Result<Tally> {
+    check(shell::cargo([
+        "clippy",
+        "--workspace",
+        "--exclude",
+        "wasm-test-runner",
+        "--all-targets",
+        "--",
+        "-D",
+        "warnings",
+    ]))
+}
+
+fn lint_wasm() -> Result<Tally> {
+    let lint = |feature| shell::cargo(["clippy", "--target", WASM, "--no-default-features", "--features", feature]);
+    let (mut page, mut worker) = (lint("page"), lint("worker"));
+    page.args(["--lib", "--", "-D", "warnings"]);
+    worker.args(["--lib", "--test", "wasm_page", "--test", "wasm_worker", "--", "-D", "warnings"]);
+    shell::run(page)?;
+    check(worker)
+}
+
+fn document() -> Result<Tally> {
+    let mut cargo = shell::cargo(["doc", "--workspace", "--exclude", "wasm-test-runner", "--no-deps", "--quiet"]);
+    cargo.env("RUSTDOCFLAGS", "-D warnings");
+    check(cargo)
+}
+
+fn test_native() -> Result<Tally> {
+    let mut tally = count(shell::cargo(["test", "--no-fail-fast"]))?;
+    tally.add(count(shell::cargo(["test", "--no-fail-fast", "--package", "xtask"]))?);
+    Ok(tally)
+}
+
+fn test_wasm() -> Result<Tally> {
+    // Built here, where it is seen to be built; Cargo's configuration names it as the runner of wasm32.
+    shell::run(shell::cargo(["build", "--package", "wasm-test-runner"]))?;
+    let mut cargo = shell::cargo(["test", "--no-fail-fast", "--target", WASM, "--no-default-features"]);
+    cargo.args(["--features", "worker", "--test", "wasm_page", "--test", "wasm_worker"]);
+    cargo.env("CHROMEDRIVER", setup::browser()?.driver).env("WASM_BINDGEN_TEST_TIMEOUT", "120");
+    count(cargo)
+}
+
+fn build() -> Result<Tally> {
+    bundle::build(false)?;
+    Ok(Tally { passed: 1, ..Tally::default() })
+}
+
+/// The page is served from deep inside a host, so that an address that is not relative is found out.
+fn test_page() -> Result<Tally> {
+    let server = Server::bind(&bundle::folder(), "/some/where/", [0])?;
+    let mut cargo = shell::cargo(["test", "--test", "page", "--", "--ignored", "--test-threads", "1", "--show-output"]);
+    cargo.env("SINEW_PAGE", server.run_behind()?).env("CHROMIUM", setup::browser()?.chromium);
+    let mut tally = count(cargo)?;
+    // The native step left these out, and said so; they have now run.
+    tally.ignored = 0;
+    Ok(tally)
+}
+
+/// Runs tests, shows what they print as they print it, and counts.
+fn count(mut command: Command) -> Result<Tally> {
+    let line = shell::line(&command);
+    let mut child = command.stdout(Stdio::piped()).spawn().with_context(|| format!("`{line}` cannot be started"))?;
+    let mut tally = Tally::default();
+    if let Some(output) = child.stdout.take() {
+        for text in BufReader::new(output).split(b'\n') {
+            let text = text?;
+            let mut out = std::io::stdout().lock();
+            out.write_all(&text)?;
+            out.write_all(b"\n")?;
+            if let Some(found) = result_line(&String::from_utf8_lossy(&text)) {
+                tally.add(found);
+            }
+        }
+    }
+    let status = child.wait()?;
+    if tally.failed > 0 {
+        return Err(Failed(tally).into());
+    }
+    if !status.success() {
+        bail!("`{line}` failed ({status})");
+    }
+    if tally == Tally::default() {
+        bail!("`{line}` ran no test at all");
+    }
+    Ok(tally)
+}
+
+/// The numbers of a line such as `test result: ok. 3 passed; 0 failed; 1 ignored; …`.
+fn result_line(line: &str) -> Option<Tally> {
+    let (_, numbers) = line.split_once("test result:")?;
+    let words: Vec<&str> = numbers.split_whitespace().collect();
+    let before = |word: &str| {
+        let at = words.iter().position(|found| found.trim_end_matches(';') == word)?;
+        words.get(at.checked_sub(1)?)?.parse().ok()
+    };
+    Some(Tally { passed: before("passed")?, failed: before("failed")?, ignored: before("ignored").unwrap_or(0) })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn result_lines_are_read() {
+        let line = "test result: FAILED. 12 passed; 1 failed; 3 ignored; 0 measured; 9 filtered out; finished in 0.2s";
+        assert_eq!(result_line(line), Some(Tally { passed: 12, failed: 1, ignored: 3 }));
+        assert_eq!(result_line("running 3 tests"), None);
+    }
+}
