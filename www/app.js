@@ -158,11 +158,24 @@ export class App extends EventTarget {
     if (answer && this.result === result) Object.assign(result, pickParts(answer));
   }
 
+  /** The open sequence in its coloured parts as the bytes of a GLB; undefined if that did not work. */
+  exportParts() {
+    const { result, colours } = this;
+    if (!result || this.opening) return undefined;
+    return this.#run('writing the file', () => this.engine.call('export', { labels: result.labels, colours }));
+  }
+
   /** @param {string} name of a parameter @param {any} value null: the engine's default */
   setParameter(name, value) {
-    if (value == null) delete this.changes[name];
+    if (value == null || value === this.about.parameters[name]) delete this.changes[name];
     else this.changes[name] = value;
     if (name === 'method') this.wanted = null;
+    this.changed('parameters', 'link');
+    return this.segment();
+  }
+
+  resetParameters() {
+    this.changes = {};
     this.changed('parameters', 'link');
     return this.segment();
   }

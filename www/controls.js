@@ -1,7 +1,8 @@
 /** Form controls in the page's own style. */
 import { h, icon, show } from './dom.js';
 
-let ids = 0;
+/** The id of a control follows from its label, so that it is the same when the control is made again. */
+const idOf = (...words) => `control-${words.join('-').toLowerCase().replace(/[^a-z0-9]+/g, '-')}`;
 
 /**
  * A slider with its name, its value in words, the paper's range on the track, and a reset.
@@ -9,7 +10,7 @@ let ids = 0;
  * @returns {{element: HTMLElement, set(value: number, text: string, changed: boolean): void}}
  */
 export function slider({ label, symbol = '', help, low, high, step, paper, reading, change, input, reset }) {
-  const id = `control-${ids++}`;
+  const id = idOf(label);
   const value = h('output', { class: 'number', for: id });
   const range = h('input', { id, type: 'range', min: low, max: high, step, title: help, on: {
     input: () => {
@@ -43,7 +44,7 @@ const paperText = ([from, to]) => (from === to ? String(from) : `${from} to ${to
 
 /** A drop-down list. `options` are `[value, label]`. */
 export function select(label, options, chosen, change) {
-  const id = `control-${ids++}`;
+  const id = idOf(label);
   const list = h('select', { id, on: { change: () => change(list.value) } },
     ...options.map(([value, text]) => h('option', { value, selected: value === chosen }, text)));
   return h('div', { class: 'row' }, h('label', { for: id }, label), list);
@@ -51,16 +52,16 @@ export function select(label, options, chosen, change) {
 
 /** A switch. */
 export function toggle(label, checked, change, help) {
-  const box = h('input', { type: 'checkbox', role: 'switch', checked, on: { change: () => change(box.checked) } });
+  const box = h('input', { id: idOf(label), type: 'checkbox', role: 'switch', checked, on: { change: () => change(box.checked) } });
   return h('label', { class: 'row switch', title: help }, h('span', {}, label), box);
 }
 
 /** A row of choices of which one holds. `options` are `[value, label, title]`. */
 export function choice(label, options, chosen, change, kind = 'chips') {
-  const name = `choice-${ids++}`;
+  const name = idOf(label);
   return h('fieldset', { class: kind }, h('legend', { class: 'hidden' }, label),
     ...options.map(([value, text, title]) => h('label', { title },
-      h('input', { type: 'radio', name, value, checked: value === chosen, on: { change: () => change(value) } }),
+      h('input', { id: idOf(label, value), type: 'radio', name, value, checked: value === chosen, on: { change: () => change(value) } }),
       h('span', {}, text))));
 }
 

@@ -38,13 +38,15 @@ export function dock(host, app) {
 }
 
 function partsSlider(app) {
-  const words = h('p', { class: 'small faint' }, 'By the letter of the paper, the method decides how many parts there are.');
+  const words = h('p', { class: 'small faint' });
+  const own = h('span', { class: 'paper point', title: 'What Sinew would choose' });
   const control = slider({
     label: 'Number of parts', low: 1, high: MOST_PARTS, step: 1, reading: (value) => String(value),
     input: (value) => app.setParts(value), reset: () => app.setParts(null),
   });
   control.element.classList.add('wide');
   const range = control.element.querySelector('input');
+  range.after(own);
   const element = h('div', {}, control.element, words);
   return {
     element,
@@ -55,18 +57,25 @@ function partsSlider(app) {
       control.element.hidden = few;
       words.hidden = !few;
       if (few) {
-        words.textContent = app.parameters.method === 'paper'
-          ? `${plural(result.parts.length, 'part')}: by the letter of the paper, the method decides how many.`
-          : 'It moves as one: there is nothing to divide.';
+        words.textContent = whyNoChoice(app);
         return;
       }
       range.min = Math.min(...counts);
       range.max = Math.min(Math.max(...counts) + 1, Math.max(MOST_PARTS, result.parts.length));
+      const share = (result.automatic.parts.length - range.min) / (range.max - range.min);
+      own.style.setProperty('--from', share);
+      own.style.setProperty('--to', share);
       // While it is dragged the slider is ahead of the answer.
       const shown = app.wanted ?? result.parts.length;
       control.set(shown, String(shown), app.wanted != null && app.wanted !== result.automatic.parts.length);
     },
   };
+}
+
+function whyNoChoice({ sequence, parameters, result }) {
+  if (sequence.sizes.poses === 0) return 'It has a single pose. Parts show only in how a thing moves.';
+  if (parameters.method === 'paper') return `${plural(result.parts.length, 'part')}: by the letter of the paper, the method decides how many.`;
+  return 'It moves as one: there is nothing to divide.';
 }
 
 function scalarLegend(app, { map, range: [low, high], unit }) {

@@ -18,9 +18,11 @@ export function svg(tag, props = {}, ...children) {
   return fill(document.createElementNS(SVG, tag), props, children);
 }
 
-/** Replaces what is in `parent`. */
+/** Replaces what is in `parent`. A control that had the focus and comes again (by its id) has it again. */
 export function show(parent, ...children) {
+  const focused = parent.contains(document.activeElement) ? document.activeElement.id : '';
   parent.replaceChildren(...children.flat().filter((child) => child != null && child !== false));
+  if (focused) document.getElementById(focused)?.focus();
   return parent;
 }
 

@@ -4,6 +4,7 @@
  */
 import { VIEWS } from './steps/views.js';
 import { STEPS } from './steps/index.js';
+import { isValid } from './steps/parameters.js';
 
 const VERSION = 'v1';
 /** Browsers limit how often the address may be replaced, in milliseconds. */
@@ -55,13 +56,10 @@ export function writeLink(app, timeline) {
 
 /** Puts what a link says into the page, as far as it makes sense there; what opens is the caller's business. */
 export function applyLink(fields, app) {
-  const { parameters } = app.about;
   app.changes = {};
   for (const [name, value] of Object.entries(fields)) {
-    if (name.startsWith('p.') && name.slice(2) in parameters) {
-      const parsed = parse(value);
-      if (['string', 'number', 'boolean'].includes(typeof parsed)) app.changes[name.slice(2)] = parsed;
-    }
+    const parsed = parse(value);
+    if (name.startsWith('p.') && isValid(name.slice(2), parsed)) app.changes[name.slice(2)] = parsed;
   }
   app.step = STEPS.some(({ id }) => id === fields.step) ? fields.step : 'parts';
   app.view = VIEWS.some(({ id }) => id === fields.view) ? fields.view : 'parts';

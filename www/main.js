@@ -13,7 +13,7 @@ import { panel } from './panel.js';
 import { pointers } from './pointer.js';
 import { progressBar } from './progress.js';
 import { rail } from './rail.js';
-import { copyLink, savePicture } from './save.js';
+import { copyLink, saveParts, savePicture } from './save.js';
 import { Stage } from './stage.js';
 import { tag } from './tag.js';
 import { theme } from './theme.js';
@@ -56,6 +56,7 @@ const showKeys = keys({ app, stage, timeline, sheet: element('keys') });
 show(element('tools'),
   iconButton('link', 'Copy a link to exactly this', () => copyLink(app, timeline)),
   iconButton('picture', 'Save the picture', () => savePicture(app)),
+  iconButton('save', 'Save the parts as GLB', () => saveParts(app)),
   iconButton('frame', 'All of it in the picture (F)', () => stage.move('frame')),
   iconButton('sun', 'Light or dark', turnTheme),
   iconButton('keys', 'Keys (?)', showKeys));

@@ -24,6 +24,12 @@ export async function savePicture(app) {
   }
 }
 
+/** The moving creature with a material for each part. */
+export async function saveParts(app) {
+  const bytes = await app.exportParts();
+  if (bytes) save(new Blob([bytes], { type: 'model/gltf-binary' }), `${fileName(app)}.glb`);
+}
+
 function save(blob, name) {
   const url = URL.createObjectURL(blob);
   h('a', { href: url, download: name }).click();

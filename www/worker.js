@@ -20,6 +20,7 @@ const operations = {
   restore: ({ kept }) => engine.restore(kept),
   segment: ({ parameters }, progress) => engine.segment(parameters, progress),
   parts: ({ parameters, parts }, progress) => engine.parts(parameters, parts, progress),
+  export: ({ labels, colours }) => engine.export(labels, colours),
 };
 
 let queue = Promise.resolve();

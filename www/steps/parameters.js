@@ -33,3 +33,13 @@ export const SMOOTHINGS = [
 
 /** How a slider's value reads. */
 export const reading = (slider, value) => (slider.format ?? number)(value);
+
+/** Whether a value, from a link for example, is one that the controls could have given. */
+export function isValid(name, value) {
+  const among = (options) => options.some(([option]) => option === value);
+  if (name === 'method') return among(METHODS);
+  if (name === 'smoothing') return among(SMOOTHINGS);
+  if (name === 'exact') return typeof value === 'boolean';
+  const slider = SLIDERS.find((entry) => entry.name === name);
+  return Boolean(slider) && typeof value === 'number' && value >= slider.low && value <= slider.high;
+}

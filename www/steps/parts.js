@@ -18,32 +18,38 @@ export const partsStep = {
 /** @param {import('../app.js').App} app */
 function build(app) {
   const quality = h('div');
+  const noticed = h('div', { class: 'stack' });
   const curve = h('div');
-  const table = h('div');
   const deformation = h('div');
-  const noticed = h('div');
-  const parameters = parameterFold(app);
-
+  const table = h('div');
+  const folds = [
+    parameterFold(app),
+    fold('Deformation', { content: [deformation] }),
+    fold('Each part', { open: true, content: [table] }),
+    fold('How it works', { load: () => lesson('parts') }),
+  ];
   const showResult = () => {
     const { result } = app;
-    for (const box of [quality, curve, table, deformation, noticed]) box.hidden = !result;
+    for (const box of [quality, noticed, curve, ...folds]) box.hidden = !result;
     if (!result) return;
     show(quality, qualityFacts(result));
-    const plot = result.curve.length
-      ? costCurve(result.curve, result.parts.length, (parts) => app.setParts(parts), 'Cost of losing a part, by number of parts')
-      : null;
-    show(curve, plot && h('h3', {}, 'What one part less costs'), plot,
-      plot && h('p', { class: 'small faint' }, 'Added residual, logarithmic, over the number of parts. Click to choose.'));
-    show(table, partTable(app));
-    show(deformation, h('h3', {}, 'Deformation'),
+    show(noticed, ...warnings(app, result.warnings));
+    show(curve, ...curvePlot(app));
+    show(deformation,
       histogram(result.deformation, result.deformable, epsilonMark(result), 'Histogram of the deformation distance'),
       h('p', { class: 'small faint' }, 'Faces by deformation distance, logarithmic. Coloured: the deformable set A.'));
-    show(noticed, ...warnings(app, result.warnings));
+    show(table, partTable(app));
   };
   app.on('result', showResult);
   showResult();
-  return h('div', { class: 'step' }, h('h2', {}, 'Parts'), quality, noticed, curve, table, deformation, parameters,
-    fold('How it works', { load: () => lesson('parts') }));
+  return h('div', { class: 'step' }, h('h2', {}, 'Parts'), quality, noticed, curve, ...folds);
+}
+
+function curvePlot(app) {
+  const { curve, parts } = app.result;
+  const plot = costCurve(curve, parts.length, (count) => app.setParts(count), 'Cost of losing a part, by number of parts');
+  return plot ? [h('h3', {}, 'What one part less costs'), plot,
+    h('p', { class: 'small faint' }, 'Added residual, logarithmic, over the number of parts. Click to choose.')] : [];
 }
 
 function qualityFacts(result) {
@@ -93,7 +99,6 @@ function highlight(app, labels, part) {
 }
 
 function parameterFold(app) {
-  const body = h('div', { class: 'stack' });
   const sliders = SLIDERS.map((definition) => {
     const control = slider({
       ...definition,
@@ -103,22 +108,25 @@ function parameterFold(app) {
     });
     return { definition, control };
   });
+  const method = choice('Method', METHODS, null, (value) => app.setParameter('method', value), 'stacked');
+  const smoothing = select('Smooth boundaries', SMOOTHINGS, null, (value) => app.setParameter('smoothing', value));
+  const exact = toggle('Exact distances', false, (on) => app.setParameter('exact', on),
+    'Average distances from all pairs of faces instead of from landmarks. Slow: made to check the fast answer.');
+  const reset = h('button', { type: 'button', class: 'text-button', on: { click: () => app.resetParameters() } }, 'Reset all');
   const update = () => {
+    const { parameters, changes, result } = app;
     for (const { definition, control } of sliders) {
-      const value = app.parameters[definition.name] ?? (app.result ? definition.found?.(app.result) : null);
-      const automatic = app.parameters[definition.name] == null;
+      const chosen = parameters[definition.name];
+      const value = chosen ?? (result ? definition.found(result) : null);
       const text = value == null ? 'from the data' : reading(definition, value);
-      control.set(value ?? definition.low, automatic && value != null ? `${text} · from the data` : text, definition.name in app.changes);
+      control.set(value ?? definition.low, chosen == null && value != null ? `from the data: ${text}` : text, definition.name in changes);
     }
-    show(body,
-      choice('Method', METHODS, app.parameters.method, (value) => app.setParameter('method', value), 'stacked'),
-      ...sliders.map(({ control }) => control.element),
-      select('Smooth boundaries', SMOOTHINGS, app.parameters.smoothing, (value) => app.setParameter('smoothing', value)),
-      toggle('Exact distances', app.parameters.exact, (on) => app.setParameter('exact', on || null),
-        'Average distances from all pairs of faces instead of from landmarks. Slow: made to check the fast answer.'));
+    method.querySelector(`[value="${parameters.method}"]`).checked = true;
+    smoothing.querySelector('select').value = parameters.smoothing;
+    exact.querySelector('input').checked = parameters.exact;
+    reset.hidden = Object.keys(changes).length === 0;
   };
-  // A control that is being used must not be rebuilt under the pointer; its value is right already.
   app.on('parameters result', update);
   update();
-  return fold('Parameters', { content: [body] });
+  return fold('Parameters', { content: [h('div', { class: 'stack' }, method, ...sliders.map(({ control }) => control.element), smoothing, exact, reset)] });
 }

@@ -9,7 +9,10 @@ import { warnings } from './warnings.js';
 export const sourceStep = {
   id: 'source',
   title: 'Source',
-  summary: (app) => app.sequence?.name ?? '',
+  summary: ({ sequence }) => {
+    if (!sequence) return '';
+    return sequence.warnings.length ? `${sequence.name} · ${plural(sequence.warnings.length, 'note')}` : sequence.name;
+  },
   build,
 };
 
