@@ -217,7 +217,7 @@ export class App extends EventTarget {
     this.stage.unmark();
     if (!this.result) {
       this.stage.boundaries = false;
-      this.stage.paint('paint_clay');
+      this.stage.paint(['paint_clay']);
       return;
     }
     const view = this.step === 'parts' ? VIEWS.find(({ id }) => id === this.view) : null;

@@ -31,7 +31,9 @@ export function dock(host, app) {
       partsControl.update();
       if (legend.firstChild !== partsControl.element) show(legend, partsControl.element);
     } else if (said.kind === 'steps') showSteps(legend, app, said);
-    else show(legend, said.kind === 'scalar' ? scalarLegend(app, said) : h('p', { class: 'small' }, said.text));
+    else if (said.kind === 'scalar') show(legend, scalarLegend(app, said));
+    else if (said.kind === 'sets') show(legend, setLegend(said));
+    else show(legend, h('p', { class: 'small' }, said.text));
   };
   app.on('view step result', update);
   update();
@@ -78,13 +80,17 @@ function whyNoChoice({ sequence, parameters, result }) {
   return 'It moves as one: there is nothing to divide.';
 }
 
-function scalarLegend(app, { map, range: [low, high], unit }) {
+function scalarLegend(app, { map, marks, unit }) {
   const colours = app.stage.colourMap(map);
   return h('div', { class: 'scale' },
-    h('span', { class: 'number' }, number(low, 2)),
-    colours ? colourBar(colours) : h('span', {}, '–'),
-    h('span', { class: 'number' }, `≥ ${number(high, 2)}`),
-    h('span', { class: 'small faint' }, unit));
+    h('p', { class: 'small faint' }, unit),
+    colours && colourBar(colours),
+    h('div', { class: 'marks small' }, ...marks.map((value, i) =>
+      h('span', { class: 'number' }, i === marks.length - 1 ? `≥ ${number(value, 2)}` : number(value, 2)))));
+}
+
+function setLegend({ a, b, text }) {
+  return h('p', { class: 'sets small' }, h('span', { class: 'chip in' }), a, h('span', { class: 'chip out' }), b, h('span', { class: 'faint number' }, text));
 }
 
 function showSteps(legend, app, { name, index, count, text, go }) {

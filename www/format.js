@@ -16,7 +16,8 @@ export function number(value, digits = 3) {
   const size = Math.abs(value);
   if (size < 1e-3 || size >= 1e5) {
     const [mantissa, exponent] = value.toExponential(1).split('e');
-    return `${mantissa}·10${superscript(Number(exponent))}`;
+    const power = `10${superscript(Number(exponent))}`;
+    return mantissa === '1.0' ? power : `${mantissa}·${power}`;
   }
   return String(Number(value.toPrecision(digits))).replace('-', '−');
 }
@@ -31,6 +32,9 @@ export function percent(share, digits = 1) {
 
 /** A residual: a length over the diagonal, in thousandths. */
 export const perMille = (value) => (Number.isFinite(value) ? `${(1000 * value).toFixed(2)} ‰` : '–');
+
+/** “person-arms-out” → “Person arms out”. */
+export const title = (name) => (name.charAt(0).toUpperCase() + name.slice(1)).replaceAll('-', ' ');
 
 /** “0.4 s”, “12 s”, “2 min”. */
 export function duration(seconds) {

@@ -6,6 +6,8 @@ const WIDTH = 304;
 const HEIGHT = 112;
 const FOOT = 20;
 const BINS = 44;
+/** A histogram spans at most this many powers of ten: below is only the rounding of the input. */
+const MOST_DECADES = 5;
 
 /**
  * Histogram of a field over the logarithm of its values, the share inside a set in the accent colour, with one
@@ -18,19 +20,20 @@ export function histogram(field, inside, mark, label) {
   const logs = Float64Array.from(field, (value) => Math.log10(value));
   const finite = logs.filter(Number.isFinite).sort();
   if (finite.length < 2 || finite[0] === finite.at(-1)) return h('p', { class: 'small faint' }, 'Nothing deforms: every face moves with its neighbours.');
-  const low = finite[Math.floor(0.002 * finite.length)];
-  const high = Math.max(finite[Math.ceil(0.999 * finite.length) - 1], low + 1e-6);
+  const high = finite[Math.ceil(0.999 * finite.length) - 1];
+  const low = Math.min(Math.max(finite[Math.floor(0.002 * finite.length)], high - MOST_DECADES), high - 1e-6);
   const bins = Array.from({ length: BINS }, () => [0, 0]);
   logs.forEach((log, face) => {
     const bin = Math.min(BINS - 1, Math.max(0, Math.floor(((log - low) / (high - low)) * BINS)));
     bins[Number.isNaN(bin) ? 0 : bin][inside[face] ? 1 : 0]++;
   });
-  const most = Math.max(...bins.map(([a, b]) => a + b));
+  // What is smaller than the scale piles up in the first bin, which may be cut off at the top.
+  const most = Math.max(1, ...bins.slice(1).map(([a, b]) => a + b));
   const floor = HEIGHT - FOOT;
   const scale = (floor - 12) / most;
   const width = WIDTH / BINS;
   const bar = (i, from, size, kind) => size > 0 &&
-    svg('rect', { x: (i * width + 0.5).toFixed(2), width: (width - 1).toFixed(2), y: (floor - (from + size) * scale).toFixed(2), height: (size * scale).toFixed(2), class: kind });
+    from * scale < floor && svg('rect', { x: (i * width + 0.5).toFixed(2), width: (width - 1).toFixed(2), y: Math.max(0, floor - (from + size) * scale).toFixed(2), height: Math.min(size * scale, floor - from * scale).toFixed(2), class: kind });
   const x = (value) => Math.min(WIDTH, Math.max(0, ((Math.log10(value) - low) / (high - low)) * WIDTH));
   return frame(label,
     ...bins.flatMap(([outside, within], i) => [bar(i, 0, outside, 'bar'), bar(i, outside, within, 'bar accent')]),

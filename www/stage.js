@@ -28,7 +28,7 @@ export class Stage extends EventTarget {
     this.view = null;
     this.backend = null;
     this.rebuilds = 0;
-    this.kept = { mesh: null, time: -1, loop: false, paint: null, boundaries: true, wireframe: false, marks: new Map(),
+    this.kept = { mesh: null, time: -1, loop: false, paint: [['paint_clay']], boundaries: true, wireframe: false, marks: new Map(),
       camera: null, dark: false, insets: [0, 0, 0, 0] };
     this.started = this.#start(module);
   }
@@ -78,7 +78,7 @@ export class Stage extends EventTarget {
     this.view.set_time(kept.time);
     this.view.set_boundaries(kept.boundaries);
     this.view.set_wireframe(kept.wireframe);
-    if (kept.paint) this.view[kept.paint.method](...kept.paint.values);
+    apply(this.view, kept.paint);
     for (const [style, faces] of kept.marks) this.view.mark_faces(faces, style);
   }
 
@@ -137,7 +137,7 @@ export class Stage extends EventTarget {
    * @param {{faces: Uint32Array, reference: Float32Array, poses: Float32Array}} mesh
    */
   open(mesh, loop) {
-    const changes = { mesh, loop, time: -1, camera: null, marks: new Map(), paint: { method: 'paint_clay', values: [] } };
+    const changes = { mesh, loop, time: -1, camera: null, marks: new Map(), paint: [['paint_clay']] };
     this.#set(changes, (view) => {
       view.set_loop(loop);
       view.set_mesh(mesh.faces, mesh.reference);
@@ -148,8 +148,13 @@ export class Stage extends EventTarget {
     });
   }
 
-  paint(method, ...values) {
-    this.#set({ paint: { method, values } }, (view) => view[method](...values));
+  /**
+   * Paints with the Viewport's `paint_` methods, one after another; the last is seen, and parts take their colours
+   * from the parts that were painted before them.
+   * @param {...[string, ...any]} paint
+   */
+  paint(...paint) {
+    this.#set({ paint }, (view) => apply(view, paint));
   }
 
   /** Marks exactly these faces with a style. */
@@ -229,6 +234,10 @@ export class Stage extends EventTarget {
     if (!blob) throw new Error('The browser could not save the picture.');
     return blob;
   }
+}
+
+function apply(view, paint) {
+  for (const [method, ...values] of paint) view[method](...values);
 }
 
 /** The backends worth trying. WebGPU is probed without a canvas: one that fails would be spoilt for WebGL2. */

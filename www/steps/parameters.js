@@ -6,7 +6,7 @@ import { number, percent } from '../format.js';
  * chose from the data where the default is to choose.
  */
 export const SLIDERS = [
-  { name: 'epsilon', symbol: 'ε', label: 'Deformable from', low: 0, high: 4, step: 0.05, paper: [0.3, 0.8], found: (r) => r.epsilon,
+  { name: 'epsilon', symbol: 'ε', label: 'Deformable above', low: 0, high: 4, step: 0.05, paper: [0.3, 0.8], found: (r) => r.epsilon,
     help: 'Faces that a dual edge heavier than this touches form the deformable set A (§3.2, step 1).' },
   { name: 'gamma', symbol: 'γ', label: 'Regions merge below', low: 0, high: 2, step: 0.02, paper: [0.4, 1.6], found: (r) => r.gamma,
     help: 'Influence regions merge when their average gradients differ by less (squared) in every pose (§3.2, step 3).' },

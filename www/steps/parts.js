@@ -25,8 +25,8 @@ function build(app) {
   const folds = [
     parameterFold(app),
     fold('Deformation', { content: [deformation] }),
-    fold('Each part', { open: true, content: [table] }),
     fold('How it works', { load: () => lesson('parts') }),
+    fold('Each part', { open: true, content: [table] }),
   ];
   const showResult = () => {
     const { result } = app;
@@ -119,7 +119,7 @@ function parameterFold(app) {
       const chosen = parameters[definition.name];
       const value = chosen ?? (result ? definition.found(result) : null);
       const text = value == null ? 'from the data' : reading(definition, value);
-      control.set(value ?? definition.low, chosen == null && value != null ? `from the data: ${text}` : text, definition.name in changes);
+      control.set(value ?? definition.low, chosen == null && value != null ? `${text} · from the data` : text, definition.name in changes);
     }
     method.querySelector(`[value="${parameters.method}"]`).checked = true;
     smoothing.querySelector('select').value = parameters.smoothing;

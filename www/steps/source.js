@@ -2,16 +2,17 @@
 import { choice, facts, fold, select, toggle } from '../controls.js';
 import { h, show } from '../dom.js';
 import { chosen } from '../files.js';
-import { count, duration, number, plural } from '../format.js';
+import { count, duration, number, plural, title } from '../format.js';
 import { lesson } from '../lesson.js';
 import { warnings } from './warnings.js';
 
 export const sourceStep = {
   id: 'source',
   title: 'Source',
-  summary: ({ sequence }) => {
-    if (!sequence) return '';
-    return sequence.warnings.length ? `${sequence.name} · ${plural(sequence.warnings.length, 'note')}` : sequence.name;
+  summary(app) {
+    if (!app.sequence) return '';
+    const { length } = app.sequence.warnings;
+    return length ? `${nameOf(app)} · ${plural(length, 'note')}` : nameOf(app);
   },
   build,
 };
@@ -29,7 +30,7 @@ function build(app) {
     const { source, sequence } = app;
     if (!sequence) return;
     show(current,
-      h('p', { class: 'name' }, sequence.name),
+      h('p', { class: 'name' }, nameOf(app)),
       facts([
         ['Vertices', count(sequence.sizes.vertices)],
         ['Faces', count(sequence.sizes.faces)],
@@ -39,7 +40,7 @@ function build(app) {
       ]),
       ...warnings(app, sequence.warnings),
       source.kind === 'zoo' ? creatureOptions(app) : isGltf(source) && animationOptions(app));
-    show(gallery, choice('Creature', app.about.creatures.map((name) => [name, capital(name)]),
+    show(gallery, choice('Creature', app.about.creatures.map((name) => [name, title(name)]),
       source.kind === 'zoo' ? source.recipe.name : null, (name) => app.openCreature({ name })));
   };
   app.on('source', update);
@@ -85,5 +86,7 @@ function animationOptions(app) {
     toggle('Weld seams', options.weld, (weld) => app.reopen({ weld }), 'Join vertices that agree in every pose'));
 }
 
+/** A creature has a name, a file its own. */
+const nameOf = ({ source, sequence }) => (source.kind === 'zoo' ? title(sequence.name) : sequence.name);
+
 const isGltf = ({ files }) => files?.some(({ name }) => /\.(glb|gltf)$/i.test(name));
-const capital = (name) => (name[0].toUpperCase() + name.slice(1)).replaceAll('-', ' ');

@@ -3,7 +3,7 @@
  * with what one step found and says what its colours mean.
  *
  * A view is `{id, label, title, paint(app), legend(app)}`; the legend describes itself as
- * `{kind: 'scalar'|'set'|'steps'|'parts'|'words', …}` for dock.js.
+ * `{kind: 'scalar'|'sets'|'steps'|'parts'|'words', …}` for dock.js.
  */
 import { number, percent, plural } from '../format.js';
 
@@ -11,28 +11,34 @@ import { number, percent, plural } from '../format.js';
 export const MARK = { highlight: 0, point: 1 };
 /** Scalar maps end at this quantile: distances have heavy tails. */
 const TOP = 0.98;
+/** Deformation is shown over this many powers of ten. */
+const DECADES = 3;
 
-const ranges = new WeakMap();
+const tops = new WeakMap();
 
-/** `[low, high]` of a field for a colour map: zero to a high quantile of its finite values. */
-export function rangeOf(field) {
-  if (!ranges.has(field)) {
+/** A high quantile of the finite values of a field: the end of its colour map. */
+function topOf(field) {
+  if (!tops.has(field)) {
     const finite = field.filter(Number.isFinite).sort();
-    const high = finite.length ? finite[Math.floor(TOP * (finite.length - 1))] : 0;
-    ranges.set(field, [0, high > 0 ? high : finite.at(-1) || 1]);
+    tops.set(field, finite[Math.floor(TOP * (finite.length - 1))] || finite.at(-1) || 1);
   }
-  return ranges.get(field);
+  return tops.get(field);
 }
 
-function scalar(app, field, map) {
-  const [low, high] = rangeOf(field);
+function scalar(app, values, low, high, map) {
   app.stage.boundaries = false;
-  app.stage.paint('paint_scalar', field.map((value) => (Number.isFinite(value) ? value : high)), low, high, map);
+  app.stage.paint(['paint_scalar', values, low, high, map]);
 }
 
+/**
+ * Paints parts. What colour each part has follows from the engine's own parts, then those in force: so it is the
+ * same whatever was looked at before, and on both sides of a link.
+ */
 function parts(app, labels) {
+  const { automatic, labels: current } = app.result;
+  const chain = new Set([automatic.labels, current, labels]);
   app.stage.boundaries = true;
-  app.stage.paint('paint_parts', labels, countOf(labels));
+  app.stage.paint(['paint_clay'], ...[...chain].map((each) => ['paint_parts', each, countOf(each)]));
 }
 
 const countOf = (labels) => labels.reduce((most, label) => Math.max(most, label + 1), 0);
@@ -45,8 +51,15 @@ export const VIEWS = [
     id: 'deformation',
     label: 'Deformation',
     title: 'How differently a face deforms from its neighbours, over their distance (Eq. 4)',
-    paint: (app) => scalar(app, app.result.deformation, 'viridis'),
-    legend: ({ result }) => ({ kind: 'scalar', map: 'viridis', range: rangeOf(result.deformation), unit: 'deformation distance' }),
+    paint(app) {
+      const top = Math.log10(topOf(app.result.deformation));
+      scalar(app, app.result.deformation.map((value) => Math.max(Math.log10(value), top - DECADES)), top - DECADES, top, 'viridis');
+    },
+    legend({ result }) {
+      const top = topOf(result.deformation);
+      const marks = Array.from({ length: DECADES + 1 }, (_, i) => top / 10 ** (DECADES - i));
+      return { kind: 'scalar', map: 'viridis', marks, unit: 'deformation distance, logarithmic' };
+    },
   },
   {
     id: 'sets',
@@ -54,19 +67,25 @@ export const VIEWS = [
     title: 'The deformable faces A and the rest B (§3.2, step 1)',
     paint(app) {
       app.stage.boundaries = false;
-      app.stage.paint('paint_set', app.result.deformable);
+      app.stage.paint(['paint_set', app.result.deformable]);
     },
     legend({ result }) {
       const a = share(result.deformable);
-      return { kind: 'words', text: `A, deformable: ${percent(a)} of the faces · B, near-rigid: ${percent(1 - a)} · ε = ${number(result.epsilon)}` };
+      return { kind: 'sets', a: `A, deformable: ${percent(a)} of the faces`, b: `B, near-rigid: ${percent(1 - a)}`, text: `ε = ${number(result.epsilon)}` };
     },
   },
   {
     id: 'distance',
     label: 'Distance from A',
     title: 'How far a face lies from the deformable set (Eq. 5): features are farthest',
-    paint: (app) => scalar(app, app.result.distance, 'cividis'),
-    legend: ({ result }) => ({ kind: 'scalar', map: 'cividis', range: rangeOf(result.distance), unit: 'distance from A' }),
+    paint(app) {
+      const top = topOf(app.result.distance);
+      scalar(app, app.result.distance.map((value) => Math.min(value, top)), 0, top, 'cividis');
+    },
+    legend({ result }) {
+      const top = topOf(result.distance);
+      return { kind: 'scalar', map: 'cividis', marks: [0, top / 2, top], unit: 'distance from A' };
+    },
   },
   {
     id: 'features',
@@ -78,7 +97,7 @@ export const VIEWS = [
       const mask = new Uint8Array(labels.length);
       const feature = features[app.feature];
       for (const face of feature?.region ?? []) mask[face] = 1;
-      app.stage.paint('paint_set', mask);
+      app.stage.paint(['paint_set', mask]);
       app.stage.mark(Uint32Array.from(features.slice(0, app.feature + 1), ({ face }) => face), MARK.point);
     },
     legend: ({ result, feature }) => ({
