@@ -5,9 +5,11 @@
 //! sequence that the page gives back after a restart ([`Engine::restore`]) yields the same bytes again.
 //! An error is one sentence for a person, thrown as a string.
 
+use crate::export::glb;
 use crate::import::{self, Clip, File, Options};
 use crate::segmentation::{Parameters, Segmentation, Segmenter, Steps};
 use crate::sequence::{Pose, Sequence, Sizes};
+use crate::view::colour::srgb_to_linear;
 use crate::warning::Warning;
 use crate::zoo::{self, Recipe};
 use glam::DVec3;
@@ -139,6 +141,13 @@ impl Engine {
         describe_parts(&self.segmented(&parameters, progress)?)
     }
 
+    /// What is open as a GLB file: `labels` is #F part numbers, `colours` three sRGB bytes a part.
+    pub fn export(&self, labels: &[u32], colours: &[u8]) -> Reply {
+        let colours: Vec<[f32; 3]> =
+            triples(colours).into_iter().map(|colour| srgb_to_linear(colour).to_array()).collect();
+        Ok(Uint8Array::from(glb::parts(self.open_sequence()?, labels, &colours).as_slice()).into())
+    }
+
     /// Cuts the merge tree, which is made first if there is none for these parameters.
     fn segmented(&mut self, parameters: &Parameters, progress: &Function) -> Result<Segmentation, JsValue> {
         let basis = Parameters { parts: None, ..parameters.clone() };
@@ -157,8 +166,11 @@ impl Engine {
             let _ = progress.call2(&JsValue::NULL, &stage.into(), &done.into());
             true
         };
-        let sequence = self.sequence.as_ref().ok_or_else(|| sentence("Nothing is open yet."))?;
-        Segmenter::new(sequence, parameters, &mut observer).map_err(sentence)
+        Segmenter::new(self.open_sequence()?, parameters, &mut observer).map_err(sentence)
+    }
+
+    fn open_sequence(&self) -> Result<&Sequence, JsValue> {
+        self.sequence.as_ref().ok_or_else(|| sentence("Nothing is open yet."))
     }
 
     fn replace(&mut self, sequence: Sequence) {
