@@ -43,6 +43,8 @@ export class App extends EventTarget {
     this.opening = 0;
     /** Counts what was started, so that a late answer to an outdated question is dropped. */
     this.turn = 0;
+    /** Counts segmentations. */
+    this.runs = 0;
   }
 
   changed(...what) {
@@ -115,9 +117,15 @@ export class App extends EventTarget {
     if (!this.sequence || this.opening) return;
     this.#giveWay();
     const { wanted, parameters } = this;
+    const run = ++this.runs;
+    const changes = { ...this.changes };
     const result = await this.#run('segmenting', (progress) =>
       this.engine.call('segment', { parameters }, { progress }));
-    if (!result) return;
+    if (!result) {
+      if (run === this.runs) this.#takeBack();
+      return;
+    }
+    result.changes = changes;
     result.automatic = pickParts(result);
     result.curve = costCurve(result);
     this.result = result;
@@ -126,6 +134,13 @@ export class App extends EventTarget {
     this.round = Math.max(0, result.rounds.length - 1);
     this.#paintParts();
     this.changed('result', 'link');
+  }
+
+  /** After a cancel or an error the parameters are again those of the parts that are shown. */
+  #takeBack() {
+    if (!this.result) return;
+    this.changes = { ...this.result.changes };
+    this.changed('parameters', 'link');
   }
 
   /** Another number of parts; null: the engine's own choice. Of many calls in a row the last one counts. */
@@ -244,7 +259,7 @@ export class App extends EventTarget {
 
   /** Tells the visitor something, calmly. */
   say(text, kind = 'error') {
-    this.notice = { text, kind };
+    this.notice = { text: text.charAt(0).toUpperCase() + text.slice(1), kind };
     this.changed('notice');
   }
 

@@ -118,8 +118,8 @@ function parameterFold(app) {
     for (const { definition, control } of sliders) {
       const chosen = parameters[definition.name];
       const value = chosen ?? (result ? definition.found(result) : null);
-      const text = value == null ? 'from the data' : reading(definition, value);
-      control.set(value ?? definition.low, chosen == null && value != null ? `${text} · from the data` : text, definition.name in changes);
+      const text = value == null ? 'auto' : reading(definition, value);
+      control.set(value ?? definition.low, chosen == null && value != null ? `${text} · auto` : text, definition.name in changes);
     }
     method.querySelector(`[value="${parameters.method}"]`).checked = true;
     smoothing.querySelector('select').value = parameters.smoothing;

@@ -78,7 +78,7 @@ function animationOptions(app) {
   const rate = options.sampling?.rate;
   const rates = [...new Set([...RATES, ...(rate ? [rate] : [])])].sort((a, b) => a - b);
   return h('div', { class: 'stack' },
-    clips.length > 0 && select('Clip', clips.map(({ name, seconds }, i) => [String(i), `${name} · ${duration(seconds)}`]),
+    clips.length > 0 && select('Clip', clips.map(({ name, seconds }, i) => [String(i), `${/^\d+$/.test(name) ? `Clip ${i + 1}` : name} · ${duration(seconds)}`]),
       String(clip), (index) => app.reopen({ clip: index })),
     select('Poses', [...rates.map((value) => [String(value), `${value} a second`]), ['keys', 'at every key']],
       rate ? String(rate) : 'keys', (value) => app.reopen({ sampling: value === 'keys' ? 'keys' : { rate: Number(value) } })),
