@@ -6,6 +6,7 @@ import { Cancelled } from './engine.js';
 import { collect, fetchSource } from './files.js';
 import { VIEWS } from './steps/views.js';
 
+const PARTS = VIEWS.at(-1);
 /** A change of a parameter during a run that will take longer than this (seconds) stops the run. */
 const WORTH_STOPPING = 1;
 
@@ -230,20 +231,24 @@ export class App extends EventTarget {
   paint() {
     if (!this.sequence) return;
     this.stage.unmark();
-    if (!this.result) {
-      this.stage.boundaries = false;
-      this.stage.paint(['paint_clay']);
+    if (this.result) {
+      this.#view().paint(this);
       return;
     }
-    const view = this.step === 'parts' ? VIEWS.find(({ id }) => id === this.view) : null;
-    (view ?? VIEWS.at(-1)).paint(this);
+    this.stage.boundaries = false;
+    this.stage.paint(['paint_clay']);
+  }
+
+  #view() {
+    return (this.step === 'parts' && VIEWS.find(({ id }) => id === this.view)) || PARTS;
   }
 
   /** Paints new parts, remembers what colour each has, and goes back to the view in force. */
   #paintParts() {
-    VIEWS.at(-1).paint(this);
+    this.stage.unmark();
+    PARTS.paint(this);
     this.colours = this.stage.partColours;
-    this.paint();
+    if (this.#view() !== PARTS) this.paint();
   }
 
   // Work and words.
