@@ -7,7 +7,7 @@ use glam::{Mat4, Vec3, Vec4};
 /// Half the angle of view over the shorter side of the free part of the window, radians.
 const HALF_ANGLE: f32 = 16.0 * std::f32::consts::PI / 180.0;
 /// Share of the free part of the window that a framed figure takes.
-const FILL: f32 = 0.84;
+const FILL: f32 = 0.88;
 /// The steepest look up or down, radians.
 const STEEPEST: f32 = 1.55;
 /// Radians of turn a pixel of drag.

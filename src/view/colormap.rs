@@ -2,7 +2,7 @@
 //!
 //! Viridis (N. Smith, S. van der Walt, 2015) and cividis (J. Nuñez, C. Anderton, R. Renslow, PLOS ONE 13(7), 2018)
 //! are in the public domain; the knots here are least-squares fits to them. The diverging map is made in OKLCH:
-//! blue and orange of equal lightness at equal distance from a light neutral middle.
+//! blue and vermilion of equal lightness at equal distance from a light neutral middle.
 
 use super::colour::{Srgb, oklch};
 
@@ -13,7 +13,7 @@ pub enum ColourMap {
     Viridis,
     /// Dark blue over grey to yellow: the same to almost every eye.
     Cividis,
-    /// Blue over neutral to orange, for values where the middle matters.
+    /// Blue over neutral to vermilion, for values where the middle matters.
     Diverging,
 }
 
@@ -54,7 +54,7 @@ impl ColourMap {
             Self::Diverging => {
                 let away = 2.0 * t - 1.0;
                 let strength = away.abs().powf(0.8);
-                oklch(0.93 - 0.43 * strength, 0.005 + 0.125 * strength, if away < 0.0 { 252.0 } else { 50.0 })
+                oklch(0.94 - 0.38 * strength, 0.005 + 0.145 * strength, if away < 0.0 { 252.0 } else { 38.0 })
             }
         }
     }
@@ -105,7 +105,7 @@ mod tests {
             let t = i as f32 / 100.0;
             assert!((light(t) - light(1.0 - t)).abs() < 0.01);
         }
-        assert!(light(0.5) > light(0.0) + 0.4);
+        assert!(light(0.5) > light(0.0) + 0.35);
     }
 
     #[test]

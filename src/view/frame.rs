@@ -38,6 +38,11 @@ pub struct Theme {
 }
 
 impl Frame {
+    /// Whether the figure throws shadows on itself.
+    pub fn shadows(&self) -> bool {
+        self.key.w > 0.0
+    }
+
     /// The numbers in the order of the struct.
     pub fn floats(&self) -> [f32; FLOATS] {
         let t = &self.theme;

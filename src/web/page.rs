@@ -157,6 +157,11 @@ impl Viewport {
         self.stage.set_wires(on);
     }
 
+    /// Sets whether the figure throws no shadow on itself: for machines that are slow with the full picture.
+    pub fn set_plain(&mut self, on: bool) {
+        self.stage.set_plain(on);
+    }
+
     /// Marks exactly these faces with a style (0 to 3); with none, the style's marks go.
     pub fn mark_faces(&mut self, faces: &[u32], style: usize) {
         self.stage.paint.mark(faces, style);

@@ -9,29 +9,33 @@ fn texel(i: u32) -> vec2u {
     return vec2u(i & 2047u, i >> 11u);
 }
 
+// The two shapes' texels of a corner's drawn vertex.
 struct Corner {
-    position: vec3f,
-    normal: vec3f,
+    a: vec4u,
+    b: vec4u,
 }
 
 fn corner(i: u32) -> Corner {
     let face = textureLoad(faces, texel(i / 3u), 0);
     let which = i % 3u;
     let v = texel(select(select(face.x, face.y, which == 1u), face.z, which == 2u));
-    let a = textureLoad(earlier, v, 0);
-    let b = textureLoad(later, v, 0);
-    let t = stage.moment.x;
-    return Corner(
-        mix(bitcast<vec3f>(a.xyz), bitcast<vec3f>(b.xyz), t),
-        mix(unpack_direction(unpack2x16snorm(a.w)), unpack_direction(unpack2x16snorm(b.w)), t),
-    );
+    return Corner(textureLoad(earlier, v, 0), textureLoad(later, v, 0));
+}
+
+fn position_of(c: Corner) -> vec3f {
+    return mix(bitcast<vec3f>(c.a.xyz), bitcast<vec3f>(c.b.xyz), stage.moment.x);
+}
+
+fn normal_of(c: Corner) -> vec3f {
+    let a = unpack_direction(unpack2x16snorm(c.a.w));
+    return mix(a, unpack_direction(unpack2x16snorm(c.b.w)), stage.moment.x);
 }
 
 // --- shadow map: the surface as the key light sees it
 
 @vertex
 fn shadow_vertex(@builtin(vertex_index) i: u32) -> @builtin(position) vec4f {
-    return stage.light * vec4f(corner(i).position, 1.0);
+    return stage.light * vec4f(position_of(corner(i)), 1.0);
 }
 
 // --- ground map: what is above the ground, by height, lowest first
@@ -43,7 +47,7 @@ struct OverGround {
 
 @vertex
 fn ground_vertex(@builtin(vertex_index) i: u32) -> OverGround {
-    let p = corner(i).position;
+    let p = position_of(corner(i));
     let height = max((p.y - stage.ground.y) / stage.eye.w, 0.0);
     return OverGround(vec4f(ground_place(p), clamp(0.3 * height, 0.0, 0.99), 1.0), height);
 }
@@ -66,8 +70,9 @@ struct Deep {
 @vertex
 fn depth_vertex(@builtin(vertex_index) i: u32) -> Deep {
     let c = corner(i);
-    let depth = dot(stage.eye.xyz - c.position, stage.back.xyz);
-    return Deep(stage.view * vec4f(c.position, 1.0), c.normal, (depth - stage.right.w) / (stage.up.w - stage.right.w));
+    let p = position_of(c);
+    let depth = dot(stage.eye.xyz - p, stage.back.xyz);
+    return Deep(stage.view * vec4f(p, 1.0), normal_of(c), (depth - stage.right.w) / (stage.up.w - stage.right.w));
 }
 
 @fragment
@@ -81,8 +86,6 @@ fn depth_fragment(in: Deep, @builtin(front_facing) front: bool) -> @location(0) 
 
 // --- the picture
 
-@group(2) @binding(0) var shadow_map: texture_depth_2d;
-@group(2) @binding(1) var shadow_sampler: sampler_comparison;
 @group(2) @binding(2) var ground_map: texture_2d<f32>;
 @group(2) @binding(3) var ground_sampler: sampler;
 @group(2) @binding(4) var hollows: texture_2d<f32>;
@@ -92,42 +95,46 @@ struct Seen {
     @location(0) world: vec3f,
     @location(1) normal: vec3f,
     @location(2) weights: vec3f,
-    @location(3) @interpolate(flat) paint: vec2u,
-    @location(4) @interpolate(flat) face: u32,
+    @location(3) @interpolate(flat) albedo: vec3f,
+    @location(4) @interpolate(flat) bits: u32,
+}
+
+// Colour of a face: its paint, its mark, and what the pointer does to it.
+fn albedo_of(face: u32, paint: vec2u) -> vec3f {
+    let low = vec4u(paint.x, paint.x >> 8u, paint.x >> 16u, paint.x >> 24u) & vec4u(255u);
+    var albedo = decode(vec3f(low.xyz) / 255.0);
+    if low.w > 0u {
+        let accent = stage.accents[min(low.w - 1u, 3u)];
+        albedo = mix(albedo, accent.rgb, accent.a);
+    }
+    let label = f32(paint.y >> 8u);
+    if label > 0.0 && label == stage.moment.z {
+        albedo = mix(albedo, vec3f(1.0), 0.12);
+    }
+    if f32(face) == stage.moment.y {
+        albedo = mix(albedo, stage.accents[4].rgb, stage.accents[4].a);
+    }
+    return albedo;
 }
 
 @vertex
 fn picture_vertex(@builtin(vertex_index) i: u32) -> Seen {
     let c = corner(i);
+    let p = position_of(c);
     let which = i % 3u;
     let weights = vec3f(f32(which == 0u), f32(which == 1u), f32(which == 2u));
     let paint = textureLoad(paints, texel(i / 3u), 0).xy;
-    return Seen(stage.view * vec4f(c.position, 1.0), c.position, c.normal, weights, paint, i / 3u);
+    return Seen(stage.view * vec4f(p, 1.0), p, normal_of(c), weights, albedo_of(i / 3u, paint), paint.y & 63u);
 }
 
-// Share of the key light that arrives, over a wide soft edge.
-fn lit(world: vec3f, normal: vec3f, pixel: vec2f) -> f32 {
-    let radius = stage.eye.w;
-    let p = stage.light * vec4f(world + normal * 0.02 * radius + stage.key.xyz * 0.01 * radius, 1.0);
-    let uv = p.xy * vec2f(0.5, -0.5) + 0.5;
-    let turn = noise(pixel) * 6.2831853;
-    var sum = 0.0;
-    for (var k = 0; k < 12; k++) {
-        // Vogel's spiral.
-        let angle = f32(k) * 2.3999632 + turn;
-        let at = sqrt((f32(k) + 0.5) / 12.0) * 0.018;
-        sum += textureSampleCompareLevel(shadow_map, shadow_sampler, uv + at * vec2f(cos(angle), sin(angle)), p.z);
-    }
-    return sum / 12.0;
-}
-
-// Shade in hollows, taken from the four nearest pixels of the half-resolution map that lie at the same depth.
-fn open(pixel: vec2f, depth: f32) -> f32 {
+// How open the surface is to the sky, and the share of the key light that arrives: from the four nearest pixels of
+// the half-resolution map, as far as they lie at the same depth.
+fn light_here(pixel: vec2f, depth: f32) -> vec2f {
     let size = vec2i(textureDimensions(hollows));
     let at = pixel * 0.5 - 0.5;
     let first = vec2i(floor(at));
     let f = at - floor(at);
-    var sum = 0.0;
+    var sum = vec2f(0.0);
     var weight = 0.0;
     for (var k = 0; k < 4; k++) {
         let step = vec2i(k & 1, k >> 1u);
@@ -135,7 +142,7 @@ fn open(pixel: vec2f, depth: f32) -> f32 {
         let near = abs(h.y + h.z / 255.0 - depth);
         let bilinear = mix(1.0 - f.x, f.x, f32(step.x)) * mix(1.0 - f.y, f.y, f32(step.y));
         let w = (bilinear + 1e-3) / (1e-3 + near * near * 4000.0);
-        sum += w * h.x;
+        sum += w * h.xw;
         weight += w;
     }
     return sum / weight;
@@ -153,47 +160,39 @@ fn picture_fragment(in: Seen) -> @location(0) vec4f {
     let dy = dpdy(in.weights);
     let pixel = in.position.xy;
 
-    // Colour of the paint.
-    let low = vec4u(in.paint.x, in.paint.x >> 8u, in.paint.x >> 16u, in.paint.x >> 24u) & vec4u(255u);
-    var albedo = decode(vec3f(low.xyz) / 255.0);
-    if low.w > 0u {
-        let accent = stage.accents[min(low.w - 1u, 3u)];
-        albedo = mix(albedo, accent.rgb, accent.a);
-    }
-    let label = f32(in.paint.y >> 8u);
-    if label > 0.0 && label == stage.moment.z {
-        albedo = mix(albedo, vec3f(1.0), 0.12);
-    }
-    let hovered = f32(in.face) == stage.moment.y;
-    if hovered {
-        albedo = mix(albedo, stage.accents[4].rgb, stage.accents[4].a);
-    }
+    let albedo = in.albedo;
 
     // Lines: distance to the three edges and corners in pixels.
     let grad = vec3f(length(vec2f(dx.x, dy.x)), length(vec2f(dx.y, dy.y)), length(vec2f(dx.z, dy.z)));
     let far = max(in.weights, vec3f(0.0)) / max(grad, vec3f(1e-12));
-    let bits = in.paint.y;
-    var line = 1e9;
-    line = select(line, min(line, far.z), (bits & 1u) != 0u);
-    line = select(line, min(line, far.x), (bits & 2u) != 0u);
-    line = select(line, min(line, far.y), (bits & 4u) != 0u);
-    let gx = vec2f(dx.x, dy.x);
-    let gy = vec2f(dx.y, dy.y);
-    let gz = vec2f(dx.z, dy.z);
-    if (bits & 8u) != 0u {
-        line = min(line, from_corner(in.weights.y, in.weights.z, gy, gz));
+    let bits = in.bits;
+    var boundary = 0.0;
+    if bits != 0u {
+        var line = 1e9;
+        line = select(line, min(line, far.z), (bits & 1u) != 0u);
+        line = select(line, min(line, far.x), (bits & 2u) != 0u);
+        line = select(line, min(line, far.y), (bits & 4u) != 0u);
+        let gx = vec2f(dx.x, dy.x);
+        let gy = vec2f(dx.y, dy.y);
+        let gz = vec2f(dx.z, dy.z);
+        if (bits & 8u) != 0u {
+            line = min(line, from_corner(in.weights.y, in.weights.z, gy, gz));
+        }
+        if (bits & 16u) != 0u {
+            line = min(line, from_corner(in.weights.z, in.weights.x, gz, gx));
+        }
+        if (bits & 32u) != 0u {
+            line = min(line, from_corner(in.weights.x, in.weights.y, gx, gy));
+        }
+        boundary = clamp(stage.lines.x + 0.5 - line, 0.0, 1.0) * stage.lines.z;
     }
-    if (bits & 16u) != 0u {
-        line = min(line, from_corner(in.weights.z, in.weights.x, gz, gx));
+    var wire = 0.0;
+    if stage.lines.w > 0.0 {
+        let wire_far = min(far.x, min(far.y, far.z));
+        // Where faces are smaller than a few pixels, wires would cover everything: they fade.
+        let height = 1.0 / max(max(grad.x, grad.y), max(grad.z, 1e-6));
+        wire = clamp(stage.lines.y + 0.5 - wire_far, 0.0, 1.0) * stage.lines.w * smoothstep(1.5, 7.0, height);
     }
-    if (bits & 32u) != 0u {
-        line = min(line, from_corner(in.weights.x, in.weights.y, gx, gy));
-    }
-    let boundary = clamp(stage.lines.x + 0.5 - line, 0.0, 1.0) * stage.lines.z;
-    let wire_far = min(far.x, min(far.y, far.z));
-    // Where faces are smaller than a few pixels, wires would cover everything: they fade.
-    let height = 1.0 / max(max(grad.x, grad.y), max(grad.z, 1e-6));
-    let wire = clamp(stage.lines.y + 0.5 - wire_far, 0.0, 1.0) * stage.lines.w * smoothstep(1.5, 7.0, height);
 
     // Light.
     var n = normalize(in.normal + vec3f(0.0, 1e-9, 0.0));
@@ -201,20 +200,26 @@ fn picture_fragment(in: Seen) -> @location(0) vec4f {
     // Seen from inside. A back face that peeps over the silhouette keeps its normal, or the outline would be dotted.
     n *= select(1.0, -1.0, dot(n, towards) < -0.25);
     let depth = (dot(stage.eye.xyz - in.world, stage.back.xyz) - stage.right.w) / (stage.up.w - stage.right.w);
-    let hollow = open(pixel, depth);
     let wrapped = clamp((dot(n, stage.key.xyz) + 0.3) / 1.3, 0.0, 1.0);
-    let shade = mix(1.0, lit(in.world, n, pixel), stage.key.w);
-    let key = stage.key_light.rgb * pow(wrapped, 1.4) * shade;
+    var arrives = vec2f(1.0);
+    // Plain drawing has no shadows.
+    if stage.key.w > 0.0 {
+        arrives = light_here(pixel, depth);
+    }
+    let hollow = arrives.x;
+    let shade = mix(1.0, arrives.y, stage.key.w);
+    let key = stage.key_light.rgb * wrapped * (0.3 + 0.7 * wrapped) * shade;
     // What stands under the body or near the ground sees less of both sky and lit ground.
     let above = (in.world.y - stage.ground.y) / stage.eye.w;
     let below = textureSampleLevel(ground_map, ground_sampler, ground_place(in.world) * vec2f(0.5, -0.5) + 0.5, 0.0);
     let covered = 1.0 - 0.55 * below.z * exp(-1.5 * max(above, 0.0));
     let sky = stage.sky_light.rgb * (0.5 + 0.5 * n.y);
     let bounce = stage.ground_light.rgb * (0.5 - 0.5 * n.y) * covered * mix(0.45, 1.0, smoothstep(0.0, 0.35, above));
-    let edge = pow(1.0 - clamp(dot(n, towards), 0.0, 1.0), 3.0) * (0.5 + 0.5 * n.y);
+    let turned = 1.0 - clamp(dot(n, towards), 0.0, 1.0);
+    let edge = turned * turned * turned * (0.5 + 0.5 * n.y);
     let rim = stage.key_light.rgb * (stage.key_light.w * edge);
     // Light that has gone from clay to clay takes on its colour: hollows are warm, not grey.
-    let tinted = pow(vec3f(max(hollow, 1e-3)), 1.35 - 0.7 * albedo);
+    let tinted = hollow * (0.85 + 0.15 * hollow + 0.6 * (1.0 - hollow) * albedo);
     var colour = albedo * (key * mix(vec3f(1.0), tinted, 0.45) + (sky + bounce) * tinted + rim);
 
     colour = mix(colour, albedo * 0.25, wire);
@@ -242,7 +247,7 @@ fn studio_fragment(in: Screen) -> @location(0) vec4f {
             let dark = (1.0 - 0.6 * s.x) * (1.0 - 0.5 * s.y) * (1.0 - 0.45 * s.z);
             // Seen from very low, the ground is a line: the shadow fades.
             let grazing = smoothstep(0.0, 0.06, -ray.y / length(ray));
-            colour *= mix(vec3f(1.0), pow(vec3f(dark), vec3f(0.92, 1.0, 1.06)), rim * grazing * stage.back_rim.w);
+            colour *= mix(vec3f(1.0), vec3f(dark) + (1.0 - dark) * dark * vec3f(0.06, 0.0, -0.05), rim * grazing * stage.back_rim.w);
         }
     }
     return vec4f(encode(colour) + (noise(pixel) - 0.5) * stage.moment.w, 1.0);

@@ -2,7 +2,7 @@
 //!
 //! A frame is drawn in six small passes. The surface is drawn as the key light sees it (a shadow map), from under
 //! the ground (which gives, blurred, the soft shadow that it stands on), and as depth and normals at half the
-//! resolution (which give the shade in hollows). Then comes the picture itself. All that lies between passes is
+//! resolution (which give the shade in hollows and, with the shadow map, the light that arrives). Then comes the picture itself. All that lies between passes is
 //! eight bits a channel, which every device can draw to.
 
 pub mod device;
@@ -26,7 +26,7 @@ use wgpu::{
 /// Side of the shadow map, pixels: small, because its edges are wanted soft.
 const SHADOW_SIDE: u32 = 512;
 /// Side of the ground map, pixels.
-const GROUND_SIDE: u32 = 256;
+const GROUND_SIDE: u32 = 160;
 
 /// Draws frames.
 pub struct Renderer {
@@ -162,22 +162,31 @@ impl Renderer {
                 pass.draw(0..3 * mesh.faces, 0..1);
             }
         };
-        let filter = |e: &mut CommandEncoder, pipeline: &RenderPipeline, source: &BindGroup, target: &TextureView| {
+        let filter = |e: &mut CommandEncoder,
+                      pipeline: &RenderPipeline,
+                      source: &BindGroup,
+                      target: &TextureView,
+                      shade: Option<&BindGroup>| {
             let mut pass = begin(e, Some((target, None, Color::TRANSPARENT)), None);
             pass.set_pipeline(pipeline);
             pass.set_bind_group(0, &self.frame_group, &[]);
             pass.set_bind_group(1, source, &[]);
+            if let Some(shade) = shade {
+                pass.set_bind_group(2, shade, &[]);
+            }
             pass.draw(0..3, 0..1);
         };
-        surface(&mut begin(e, None, Some((&fixed.shadow, StoreOp::Store))), &p.shadow);
         let over = Some((&fixed.ground[0], None, Color::TRANSPARENT));
         surface(&mut begin(e, over, Some((&fixed.ground_depth, StoreOp::Discard))), &p.ground);
-        filter(e, &p.spread[0], &fixed.spread[0], &fixed.ground[1]);
-        filter(e, &p.spread[1], &fixed.spread[1], &fixed.ground[0]);
-        let deep = Some((&sized.deep, None, Color::WHITE));
-        surface(&mut begin(e, deep, Some((&sized.deep_depth, StoreOp::Discard))), &p.depth);
-        filter(e, &p.hollow[0], &sized.hollow_groups[0], &sized.hollow[0]);
-        filter(e, &p.hollow[1], &sized.hollow_groups[1], &sized.hollow[1]);
+        filter(e, &p.spread[0], &fixed.spread[0], &fixed.ground[1], None);
+        filter(e, &p.spread[1], &fixed.spread[1], &fixed.ground[0], None);
+        if frame.shadows() {
+            surface(&mut begin(e, None, Some((&fixed.shadow, StoreOp::Store))), &p.shadow);
+            let deep = Some((&sized.deep, None, Color::WHITE));
+            surface(&mut begin(e, deep, Some((&sized.deep_depth, StoreOp::Discard))), &p.depth);
+            filter(e, &p.hollow[0], &sized.hollow_groups[0], &sized.hollow[0], Some(&sized.shade));
+            filter(e, &p.hollow[1], &sized.hollow_groups[1], &sized.hollow[1], None);
+        }
         {
             let view = picture.texture.create_view(&Default::default());
             let target = Some((&sized.colour, Some(&view), Color::BLACK));

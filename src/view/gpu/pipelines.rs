@@ -80,8 +80,8 @@ impl Pipelines {
             let fragment = Some((fragment, gpu.format));
             pipeline(gpu, &Pass { module, groups, vertex, fragment, depth: Some(depth), samples: SAMPLES })
         };
-        let filter = |fragment| {
-            let (module, groups) = (&filters, &[frame, source][..]);
+        let filter = |fragment, groups: &[_]| {
+            let module = &filters;
             let fragment = Some((fragment, DATA));
             pipeline(gpu, &Pass { module, groups, vertex: "screen", fragment, depth: None, samples: 1 })
         };
@@ -91,8 +91,8 @@ impl Pipelines {
             depth: drawn("depth_vertex", Some(("depth_fragment", DATA))),
             picture: seen("picture_vertex", "picture_fragment", CompareFunction::Less),
             studio: seen("screen", "studio_fragment", CompareFunction::Always),
-            spread: [filter("spread_across"), filter("spread_down")],
-            hollow: [filter("hollow"), filter("hollow_blur")],
+            spread: [filter("spread_across", &[frame, source]), filter("spread_down", &[frame, source])],
+            hollow: [filter("hollow", &[frame, source, shade]), filter("hollow_blur", &[frame, source])],
             layouts,
         }
     }
