@@ -112,7 +112,9 @@ impl Field {
                 limb = far;
                 current = Some(owned.limb);
             }
-            if owned.cone.is_beyond(p, limb.distance) {
+            // What is much farther away than the body so far changes nothing.
+            let relevant = limb.distance.min(body.distance + 1.5 * self.limbs[owned.limb as usize].1);
+            if owned.cone.is_beyond(p, relevant) {
                 continue;
             }
             let near = owned.cone.near(p);
@@ -132,7 +134,8 @@ impl Field {
 fn smooth_union(a: Value, b: Value, width: f64) -> Value {
     let (near, far) = if a.distance <= b.distance { (a, b) } else { (b, a) };
     let gap = far.distance - near.distance;
-    if gap >= width || width <= 0.0 {
+    // The gap between two that are infinitely far is not a number.
+    if gap.is_nan() || gap >= width {
         return near;
     }
     let h = 1.0 - gap / width;

@@ -32,7 +32,8 @@ pub struct Cone {
     along: DVec3,
     inverse_length2: f64,
     radius: [f64; 2],
-    flat: [f64; 2],
+    /// How much the flat direction is stretched to make cross-sections round, less 1, at both ends.
+    stretch: [f64; 2],
     /// Arc length from the start of the limb at both ends.
     arc: [f64; 2],
     direction: DVec3,
@@ -60,16 +61,15 @@ impl Cone {
         let from = p - self.from;
         let t = (from.dot(self.along) * self.inverse_length2).clamp(0.0, 1.0);
         let radius = self.radius[0] + t * (self.radius[1] - self.radius[0]);
-        let flat = self.flat[0] + t * (self.flat[1] - self.flat[0]);
+        let stretch = self.stretch[0] + t * (self.stretch[1] - self.stretch[0]);
         let q = from - t * self.along;
         // Stretch the flat direction until the cross-section is round, measure there, and divide by how much the
         // stretching steepens the distance.
-        let stretch = 1.0 / flat - 1.0;
         let round = q + self.direction * (q.dot(self.direction) * stretch);
         let steep = round + self.direction * (round.dot(self.direction) * stretch);
         let (length, steepness) = (round.length(), steep.length());
         let arc = self.arc[0] + t * (self.arc[1] - self.arc[0]);
-        let thin = radius * flat.min(1.0);
+        let thin = if stretch > 0.0 { radius / (1.0 + stretch) } else { radius };
         if steepness < 1e-12 {
             return Near { distance: -thin, gradient: self.direction, arc, radius: thin };
         }
@@ -124,15 +124,16 @@ impl Limb {
         &self.cones
     }
 
-    /// Where a point lies with respect to the whole limb.
-    pub fn near(&self, p: DVec3) -> Option<Near> {
-        self.cones.iter().fold(None, |best: Option<Near>, cone| match best {
-            Some(best) if cone.is_beyond(p, best.distance) => Some(best),
-            best => {
-                let near = cone.near(p);
-                best.filter(|best| best.distance <= near.distance).or(Some(near))
+    /// Where a point lies with respect to the whole limb; `None` if it is farther away than `limit`.
+    pub fn near(&self, p: DVec3, limit: f64) -> Option<Near> {
+        let mut best: Option<Near> = None;
+        for cone in &self.cones {
+            let limit = best.map_or(limit, |best| best.distance);
+            if !cone.is_beyond(p, limit) {
+                best = Some(cone.near(p)).filter(|near| near.distance < limit).or(best);
             }
-        })
+        }
+        best
     }
 
     /// Arc length of the place on the centre line nearest to a point, and the radius there.
@@ -168,7 +169,7 @@ fn cut(stations: &[Station], direction: DVec3) -> Vec<Cone> {
                 along,
                 inverse_length2: 1.0 / (length * length),
                 radius: [a.radius, b.radius],
-                flat: [a.flat, b.flat],
+                stretch: [1.0 / a.flat - 1.0, 1.0 / b.flat - 1.0],
                 arc: [arc, arc + length],
                 direction,
                 centre: a.at + 0.5 * along,

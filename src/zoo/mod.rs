@@ -75,6 +75,18 @@ impl Default for Recipe {
 /// The creatures there are.
 pub const NAMES: &[&str] = &["horse", "camel", "person", "person-arms-out", "snake"];
 
+/// What to call a creature in front of people.
+pub fn title(name: &str) -> &str {
+    match name {
+        "horse" => "Horse",
+        "camel" => "Camel",
+        "person" => "Person",
+        "person-arms-out" => "Person, arms out",
+        "snake" => "Snake",
+        other => other,
+    }
+}
+
 /// Makes a creature; `None` if there is none of that name.
 ///
 /// The number of faces is brought into 1,000 to 1,000,000 and the number of poses into 1 to 240.

@@ -85,7 +85,7 @@ impl Walk {
         // The head goes down as a fore foot bears weight.
         let nod = self.nod * wave(beat + 0.02);
         turns.set("lower neck", pitch(5.5 * nod) * yaw(2.0 * wave(phase)));
-        turns.set("upper neck", pitch(-5.5 * self.nod * wave(beat - 0.10)) * yaw(-1.0 * wave(phase)));
+        turns.set("upper neck", pitch(-5.5 * self.nod * wave(beat - 0.10)) * yaw(-wave(phase)));
         turns.set("head", pitch(6.0 * self.nod * wave(beat - 0.22)));
         turns.set("tail root", yaw(9.0 * self.tail * wave(phase)) * pitch(-3.0 + 3.0 * wave(beat)));
         turns.set("tail", roll(11.0 * self.tail * wave(phase - 0.17)) * pitch(-4.0 * wave(beat - 0.2)));

@@ -116,8 +116,9 @@ impl Surface {
         (b - a).cross(c - a)
     }
 
-    /// Whether moving the end of `h` into its start keeps the mesh a manifold without folding it.
-    pub fn can_collapse(&self, h: u32) -> bool {
+    /// Whether moving the end of `h` into its start keeps the mesh a manifold without folding it. Faces may turn by
+    /// an angle with the cosine `straight`, and their height over their longest side be as low as `height`.
+    pub fn can_collapse(&self, h: u32, straight: f64, height: f64) -> bool {
         let o = self.opposite(h);
         let (keep, gone) = (self.from(h), self.to(h));
         if self.valence(previous(h)) <= 3 || self.valence(previous(o)) <= 3 {
@@ -146,9 +147,9 @@ impl Surface {
             let (pb, pc) = (self.at(b), self.at(c));
             let (before, after) = (self.normal(edge), (pb - to).cross(pc - to));
             let longest = (pb - to).length_squared().max((pc - to).length_squared()).max((pc - pb).length_squared());
-            let straight = before.dot(after) > 0.7 * before.length() * after.length();
+            let turns_little = before.dot(after) > straight * before.length() * after.length();
             debug_assert!(self.from(edge) == gone);
-            straight && after.length() > 0.15 * longest
+            turns_little && after.length() > height * longest
         })
     }
 

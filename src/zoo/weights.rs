@@ -29,8 +29,16 @@ impl<'a> Binder<'a> {
 
     /// A smooth blend of a few bones.
     pub fn smooth(&self, p: DVec3) -> Weights {
-        let near: Vec<_> = self.limbs.iter().map(|limb| limb.near(p)).collect();
-        let nearest = near.iter().flatten().map(|n| n.distance).fold(f64::INFINITY, f64::min);
+        let mut nearest = f64::INFINITY;
+        let near: Vec<_> = self
+            .limbs
+            .iter()
+            .map(|limb| {
+                let near = limb.near(p, nearest + limb.blend)?;
+                nearest = nearest.min(near.distance);
+                Some(near)
+            })
+            .collect();
         let mut weights: Weights = Vec::new();
         for ((limb, joints), near) in self.limbs.iter().zip(&self.joints).zip(&near) {
             let Some(near) = near else { continue };
@@ -54,8 +62,14 @@ impl<'a> Binder<'a> {
 
     /// The one bone that a point belongs to.
     pub fn exact(&self, p: DVec3) -> u32 {
-        let near = self.limbs.iter().zip(&self.joints).filter_map(|(limb, joints)| Some((limb, joints, limb.near(p)?)));
-        let nearest = near.min_by(|a, b| a.2.distance.total_cmp(&b.2.distance));
+        let mut nearest = None;
+        let mut limit = f64::INFINITY;
+        for (limb, joints) in self.limbs.iter().zip(&self.joints) {
+            if let Some(near) = limb.near(p, limit) {
+                limit = near.distance;
+                nearest = Some((limb, joints, near));
+            }
+        }
         nearest.map_or(0, |(limb, joints, near)| {
             let passed = joints.iter().filter(|&&(arc, _)| near.arc > arc).count();
             limb.bones.get(passed).copied().unwrap_or(0)
