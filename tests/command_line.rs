@@ -1,5 +1,5 @@
 //! The command line: reports, files, and the exit status 2 with one sentence for what cannot be used.
-#![cfg(feature = "cli")]
+#![cfg(all(feature = "cli", not(target_arch = "wasm32")))]
 
 mod gltf_maker;
 
@@ -151,4 +151,48 @@ fn the_zoo_is_listed() {
     assert!(output.status.success());
     let listed: Vec<String> = String::from_utf8(output.stdout).unwrap().lines().map(Into::into).collect();
     assert_eq!(listed, sinew::zoo::NAMES);
+}
+
+/// What the zoo writes, the importer reads: the creature comes back with its poses and its faces in their order.
+#[test]
+fn a_creature_goes_out_and_comes_back() {
+    let folder = folder("creature");
+    let arguments =
+        ["zoo", "horse", "--faces", "3000", "--poses", "6", "--exact", "--out", "horse.glb", "--labels", "true.txt"];
+    let output = sinew(&folder, &arguments);
+    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+    let recipe = sinew::zoo::Recipe { name: "horse".into(), faces: 3000, poses: 6, exact: true };
+    let creature = sinew::zoo::make(&recipe).unwrap();
+    let bytes = std::fs::read(folder.join("horse.glb")).unwrap();
+    let file = sinew::import::File { name: "horse.glb".into(), bytes };
+    let options = sinew::import::Options { sampling: sinew::import::Sampling::Keys, ..Default::default() };
+    let back = sinew::import::open(&[file], &options).unwrap().sequence;
+    let (sizes, expected) = (back.sizes(), creature.sequence.sizes());
+    assert_eq!((sizes.vertices, sizes.faces), (expected.vertices, expected.faces));
+    // One primitive a part: faces come back part by part, each corner where it was.
+    let labels: Vec<u32> =
+        std::fs::read_to_string(folder.join("true.txt")).unwrap().lines().map(|l| l.parse().unwrap()).collect();
+    assert_eq!(labels, creature.labels);
+    let mut order: Vec<usize> = (0..labels.len()).collect();
+    order.sort_by_key(|&f| labels[f]);
+    for (pose, theirs) in creature.sequence.poses().iter().zip(back.poses()) {
+        for (face, &f) in back.faces().iter().zip(&order) {
+            for (a, b) in face.iter().zip(&creature.sequence.faces()[f]) {
+                let far = theirs.positions[*a as usize].distance(pose.positions[*b as usize]);
+                assert!(far < 1e-5 * creature.sequence.diagonal(), "face {f}: {far}");
+            }
+        }
+    }
+}
+
+#[test]
+fn parts_are_written_as_glb() {
+    let folder = folder("parts");
+    strip(&folder);
+    let output = sinew(&folder, &["segment", "rest.obj", "pose.2.obj", "pose.10.obj", "--out", "parts.glb"]);
+    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+    let report = json(&sinew(&folder, &["inspect", "parts.glb", "--json"]).stdout);
+    assert_eq!((&report["vertices"], &report["faces"]), (&Value::from(7), &Value::from(5)));
+    let output = sinew(&folder, &["segment", "rest.obj", "pose.2.obj", "--out", "no/such/folder.glb"]);
+    assert_eq!(output.status.code(), Some(2));
 }

@@ -2,6 +2,7 @@
 //!
 //! The assets are not part of the project: where the folder beside it is missing, these tests say so and are left
 //! out.
+#![cfg(not(target_arch = "wasm32"))]
 
 use sinew::import::gltf::Model;
 use sinew::import::{File, Options, Reference, Sampling, open};

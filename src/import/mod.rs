@@ -95,8 +95,8 @@ pub struct Imported {
     pub clips: Vec<Clip>,
     /// The clip that was sampled: an index into `clips`.
     pub clip: Option<usize>,
-    /// The number of faces that the input has, polygons counted as one: for OBJ, OFF and PLY the number of face
-    /// records, for glTF the number of triangles of the sequence.
+    /// The number of faces that the input has, a polygon counted as one face. `sequence.polygons()` says which of
+    /// them each triangle of the sequence comes from, where the two differ.
     pub input_faces: usize,
     /// What was noticed on the way.
     pub warnings: Vec<Warning>,

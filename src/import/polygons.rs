@@ -14,8 +14,8 @@ pub struct PolygonMesh {
     corners: Vec<u32>,
 }
 
-/// Polygons of more corners are cut as a fan: cutting ears takes quadratic time.
-const EARS: usize = 500;
+/// Polygons of more corners are cut as a fan: cutting ears takes cubic time at the worst.
+const EARS: usize = 64;
 
 impl Default for PolygonMesh {
     fn default() -> Self {

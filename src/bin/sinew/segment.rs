@@ -82,7 +82,7 @@ impl Segment {
             output::write_report(path, &report(&imported, &parameters, &result, reading))?;
         }
         if let Some(path) = &self.out {
-            output::write_glb(path, &imported.sequence, &result.labels)?;
+            output::write_glb(path, &imported.sequence, &result.labels, &[])?;
         }
         print(&imported, &result);
         Ok(())

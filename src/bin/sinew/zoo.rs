@@ -52,7 +52,7 @@ impl Zoo {
             output::write(path, labels::text(&creature.labels))?;
         }
         if let Some(path) = &self.out {
-            output::write_glb(path, &creature.sequence, &creature.labels)?;
+            output::write_glb(path, &creature.sequence, &creature.labels, &creature.parts)?;
         }
         let sizes = creature.sequence.sizes();
         println!(

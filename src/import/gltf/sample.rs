@@ -4,7 +4,7 @@ use super::clip::Motion;
 use super::model::Model;
 use crate::import::{File, ImportError, Imported, Options, Reference, Sampling, counted};
 use crate::mesh::weld::{compact, weld};
-use crate::sequence::{Pose, Sequence};
+use crate::sequence::{Pose, Sequence, SequenceError};
 use crate::warning::Warning;
 use glam::DVec3;
 use std::collections::BTreeMap;
@@ -55,15 +55,18 @@ pub fn open(file: &File, files: &[File], options: &Options) -> Result<Imported, 
     if options.weld {
         weld_seams(&mut faces, &mut reference, &mut poses, &mut warnings);
     }
-    drop_collapsed(&mut faces, &mut warnings);
+    let input_faces = faces.len();
+    let stay = drop_collapsed(&mut faces, &mut warnings);
     if faces.is_empty() {
         return Err(ImportError(format!(
             "all triangles of {name} are collapsed to a point or a line; export it again"
         )));
     }
-    let sequence = Sequence::new(short_name(&name), faces, reference, poses)
-        .map_err(|error| ImportError(format!("{name}: {error}; the file is damaged, export it again")))?;
-    let input_faces = sequence.faces().len();
+    let wrong = |error: SequenceError| ImportError(format!("{name}: {error}; the file is damaged, export it again"));
+    let mut sequence = Sequence::new(short_name(&name), faces, reference, poses).map_err(wrong)?;
+    if let Some(stay) = stay {
+        sequence = sequence.with_polygons(stay).map_err(wrong)?;
+    }
     Ok(Imported { sequence, clips, clip, input_faces, warnings: at_most_a_few(warnings) })
 }
 
@@ -193,16 +196,18 @@ fn weld_seams(faces: &mut [[u32; 3]], reference: &mut Vec<DVec3>, poses: &mut [P
     ));
 }
 
-fn drop_collapsed(faces: &mut Vec<[u32; 3]>, warnings: &mut Vec<Warning>) {
-    let before = faces.len();
-    faces.retain(|[a, b, c]| a != b && b != c && c != a);
-    let gone = before - faces.len();
-    if gone > 0 {
-        warnings.push(Warning::new(
-            "collapsed-faces",
-            format!("{} left out because two corners are one point.", counted(gone, "face was", "faces were")),
-        ));
+/// Removes faces of which two corners are one vertex. Returns the old numbers of those that stay, if any had to go.
+fn drop_collapsed(faces: &mut Vec<[u32; 3]>, warnings: &mut Vec<Warning>) -> Option<Vec<u32>> {
+    let whole = |&[a, b, c]: &[u32; 3]| a != b && b != c && c != a;
+    let stay: Vec<u32> = (0..faces.len() as u32).filter(|&f| whole(&faces[f as usize])).collect();
+    let gone = faces.len() - stay.len();
+    if gone == 0 {
+        return None;
     }
+    faces.retain(whole);
+    let message = format!("{} left out because two corners are one point.", counted(gone, "face was", "faces were"));
+    warnings.push(Warning::new("collapsed-faces", message));
+    Some(stay)
 }
 
 /// The diagonal of the bounding box.
