@@ -97,9 +97,7 @@ const WEBGL2: &[&str] = &["--enable-unsafe-swiftshader", "--use-angle=swiftshade
 
 impl Browser {
     fn start(backend: Backend) -> Self {
-        let profile = Path::new(env!("CARGO_TARGET_TMPDIR")).join(format!("chromium-{}", backend.name()));
-        // Nothing is left from the last run: no cache, no storage, no lock.
-        let _ = std::fs::remove_dir_all(&profile);
+        let profile = fresh_profile(backend);
         // The browser reads its protocol from descriptor 3 and writes it to 4; the shell puts our pipe there.
         let mut command = Command::new("sh");
         command.args(["-c", r#"exec "$0" "$@" 3<&0 4>&1 </dev/null >/dev/null"#]).arg(program());
@@ -206,7 +204,7 @@ impl Browser {
                 if message["method"] == "Target.attachedToTarget"
                     && let Some(session) = message["params"]["sessionId"].as_str()
                 {
-                    self.listen(&session.to_owned());
+                    self.listen(session);
                 }
                 Some(message)
             }
@@ -214,6 +212,20 @@ impl Browser {
             Err(RecvTimeoutError::Disconnected) => panic!("the browser has ended: {:?}", self.process.try_wait()),
         }
     }
+}
+
+/// An empty folder for what the browser keeps. Those of runs before are removed; a browser of theirs that is still
+/// on its way out has a folder of its own.
+fn fresh_profile(backend: Backend) -> PathBuf {
+    let scratch = Path::new(env!("CARGO_TARGET_TMPDIR"));
+    let start = format!("chromium-{}-", backend.name());
+    for entry in std::fs::read_dir(scratch).into_iter().flatten().flatten() {
+        if entry.file_name().to_string_lossy().starts_with(&start) {
+            // What cannot be removed yet is removed by a later run.
+            let _ = std::fs::remove_dir_all(entry.path());
+        }
+    }
+    scratch.join(format!("{start}{}", std::process::id()))
 }
 
 /// The browser to run: the variable `CHROMIUM`, or the first of the usual names on the path.

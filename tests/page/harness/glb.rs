@@ -17,7 +17,7 @@ pub fn hinge(rings: u32) -> Vec<u8> {
     let joints = buffer.add_bytes(positions.iter().flat_map(|p| [u8::from(p[0] > 0.0), 0, 0, 0]));
     let weights = buffer.add("VEC4", positions.iter().flat_map(|_| [1.0, 0.0, 0.0, 0.0]));
     let indices = buffer.add_indices(faces.iter().flatten().copied());
-    let identity = |i: usize| if i % 16 % 5 == 0 { 1.0 } else { 0.0 };
+    let identity = |i: usize| if (i % 16).is_multiple_of(5) { 1.0 } else { 0.0 };
     let inverse = buffer.add("MAT4", (0..32).map(identity));
     let times = buffer.add("SCALAR", [0.0, 1.0, 2.0]);
     buffer.accessors[times]["min"] = json!([0.0]);
