@@ -50,7 +50,7 @@ export function writeLink(app, timeline) {
   else if (!timeline.playing && timeline.poses > 1) fields.t = timeline.time.toFixed(2);
   const camera = app.stage.kept.camera;
   if (camera) fields.camera = [...camera].map((value) => Number(value.toPrecision(4))).join();
-  const text = Object.entries(fields).map(([name, value]) => `;${name}=${encodeURIComponent(value)}`).join('');
+  const text = Object.entries(fields).map(([name, value]) => `;${name}=${encodeURIComponent(value).replaceAll('%2C', ',')}`).join('');
   return `#${VERSION}${text}`;
 }
 

@@ -81,7 +81,6 @@ function keepClear() {
 
 async function start() {
   app.about = await engine.about;
-  app.panel = !NARROW.matches;
   await openAddress();
   rail(element('rail'), app);
   panel(element('panel'), app);
@@ -96,13 +95,21 @@ async function openAddress() {
   const fields = readLink();
   const place = placeOf(fields);
   applyLink(fields, app);
-  if (fields.panel === 'away') app.setPanel(false);
+  app.setPanel(fields.panel !== 'away' && !NARROW.matches);
   app.addEventListener('source', () => goTo(place), { once: true });
   const address = query.get('src');
   const opened = address
-    ? app.openAddress(address, optionsOf(fields, app.about)).then((done) => done || app.sequence || app.openCreature({}))
+    ? openOr(address, optionsOf(fields, app.about))
     : app.openCreature(recipeOf(fields, app.about) ?? {});
   opened.catch((error) => app.say(error.message));
+}
+
+/** Opens what `?src=` names, or the first creature with a word about what went wrong. */
+async function openOr(address, options) {
+  if ((await app.openAddress(address, options)) || app.sequence) return;
+  const { notice } = app;
+  await app.openCreature({});
+  if (notice) app.say(notice.text);
 }
 
 /** The number of parts, the moment and the camera of a link. */
