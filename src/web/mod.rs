@@ -2,3 +2,5 @@
 
 #[cfg(all(target_arch = "wasm32", feature = "page"))]
 pub mod page;
+#[cfg(all(target_arch = "wasm32", feature = "worker"))]
+pub mod worker;

@@ -1,0 +1,70 @@
+/** Small helpers to build elements. Text always goes in as text, never as markup. */
+
+const SVG = 'http://www.w3.org/2000/svg';
+
+/**
+ * An HTML element. `props`: `on` is a map of listeners, `style` a map of CSS properties (set through CSSOM, since
+ * the page's policy forbids inline styles), `value`/`checked`/`disabled` … are properties, all else attributes.
+ * @param {string} tag
+ * @param {Record<string, any>} [props]
+ * @param {...(Node|string|null|undefined|false)} children
+ */
+export function h(tag, props = {}, ...children) {
+  return fill(document.createElement(tag), props, children);
+}
+
+/** The same for SVG. */
+export function svg(tag, props = {}, ...children) {
+  return fill(document.createElementNS(SVG, tag), props, children);
+}
+
+/** Replaces what is in `parent`. A control that had the focus and comes again (by its id) has it again. */
+export function show(parent, ...children) {
+  const focused = parent.contains(document.activeElement) ? document.activeElement.id : '';
+  parent.replaceChildren(...children.flat().filter((child) => child != null && child !== false));
+  if (focused) document.getElementById(focused)?.focus();
+  return parent;
+}
+
+const PROPERTIES = new Set(['value', 'checked', 'disabled', 'hidden', 'open', 'selected', 'htmlFor', 'indeterminate']);
+
+function fill(element, props, children) {
+  for (const [name, value] of Object.entries(props)) {
+    if (value == null || value === false) continue;
+    if (name === 'on') for (const [event, listener] of Object.entries(value)) element.addEventListener(event, listener);
+    else if (name === 'style') for (const [key, entry] of Object.entries(value)) element.style.setProperty(key, entry);
+    else if (PROPERTIES.has(name)) element[name] = value;
+    else element.setAttribute(name, value === true ? '' : value);
+  }
+  element.append(...children.flat().filter((child) => child != null && child !== false));
+  return element;
+}
+
+const ICONS = {
+  play: 'M7 4.5v15l12-7.5z',
+  pause: 'M7 5h3.5v14H7zM13.5 5H17v14h-3.5z',
+  close: 'M6 6l12 12M18 6L6 18',
+  panel: 'M4 5h16v14H4zM14.5 5v14',
+  sun: 'M12 8a4 4 0 100 8 4 4 0 000-8zM12 2.5v2M12 19.5v2M2.5 12h2M19.5 12h2M5.3 5.3l1.4 1.4M17.3 17.3l1.4 1.4M5.3 18.7l1.4-1.4M17.3 6.7l1.4-1.4',
+  link: 'M10 14a4 4 0 005.7 0l3-3a4 4 0 00-5.7-5.7l-1 1M14 10a4 4 0 00-5.7 0l-3 3A4 4 0 0011 18.700l1-1',
+  picture: 'M4 7.5h3.5l1.5-2.5h6l1.5 2.5H20V19H4zM12 10a3.2 3.2 0 100 6.4 3.2 3.2 0 000-6.400z',
+  keys: 'M9.3 9a2.8 2.8 0 115.4.900c0 1.9-2.7 2.2-2.7 4.100M12 17.400v.2',
+  frame: 'M4 9V4h5M15 4h5v5M20 15v5h-5M9 20H4v-5',
+  previous: 'M14 6l-6 6 6 6',
+  next: 'M10 6l6 6-6 6',
+  save: 'M12 4v11M7.5 11l4.5 4.5L16.5 11M5 19.5h14',
+  reset: 'M5 12a7 7 0 107-7H7M9.5 2L6.5 5l3 3',
+};
+
+/** A 24-unit line icon (filled for play and pause). */
+export function icon(name) {
+  const solid = name === 'play' || name === 'pause';
+  return svg('svg', { viewBox: '0 0 24 24', class: solid ? 'icon solid' : 'icon', 'aria-hidden': 'true' },
+    svg('path', { d: ICONS[name] }));
+}
+
+/** A button with an icon and a label that only assistive technology and the tooltip show. */
+export function iconButton(name, label, onClick, props = {}) {
+  return h('button', { type: 'button', class: 'icon-button', 'aria-label': label, title: label, on: { click: onClick }, ...props },
+    icon(name));
+}

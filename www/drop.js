@@ -1,0 +1,27 @@
+/** Files dropped anywhere on the page. */
+import { dropped } from './files.js';
+
+/** @param {HTMLElement} veil shown while something is dragged over the page */
+export function drops(veil, app) {
+  let depth = 0;
+  const hasFiles = (event) => event.dataTransfer?.types.includes('Files');
+  const show = (change) => {
+    depth = Math.max(0, depth + change);
+    veil.hidden = depth === 0;
+  };
+  window.addEventListener('dragenter', (event) => hasFiles(event) && show(1));
+  window.addEventListener('dragleave', (event) => hasFiles(event) && show(-1));
+  window.addEventListener('dragover', (event) => hasFiles(event) && event.preventDefault());
+  window.addEventListener('drop', async (event) => {
+    if (!hasFiles(event)) return;
+    event.preventDefault();
+    show(-depth);
+    try {
+      const files = await dropped(event.dataTransfer);
+      if (files.length) await app.openFiles(files);
+      else app.say('There was no file in what was dropped.');
+    } catch {
+      app.say('What was dropped could not be read.');
+    }
+  });
+}

@@ -1,0 +1,107 @@
+/** Files as the visitor gives them: dropped, chosen, or at an address. */
+
+/** More than this cannot be held by a page, in bytes. */
+const MOST_BYTES = 1 << 30;
+/** What a link may bring, in bytes. */
+const MOST_DOWNLOAD = 256 << 20;
+
+const megabytes = (bytes) => `${Math.round(bytes / (1 << 20))} MB`;
+
+/** The message that opens files. */
+export async function collect(files, options) {
+  const total = files.reduce((sum, { blob }) => sum + blob.size, 0);
+  if (total > MOST_BYTES) throw new Error(`These files have ${megabytes(total)}; Sinew opens up to ${megabytes(MOST_BYTES)}.`);
+  const read = files.map(async ({ name, blob }) => {
+    try {
+      return { name, bytes: new Uint8Array(await blob.arrayBuffer()) };
+    } catch {
+      throw new Error(`“${name}” can no longer be read; it may have been moved or changed.`);
+    }
+  });
+  return { files: await Promise.all(read), options };
+}
+
+/** Everything in a drop, folders included. Must be called before the event handler returns. */
+export function dropped(transfer) {
+  const entries = [...transfer.items].filter((item) => item.kind === 'file')
+    .map((item) => item.webkitGetAsEntry?.() ?? item.getAsFile());
+  return Promise.all(entries.filter(Boolean).map(walk)).then((found) => found.flat());
+}
+
+async function walk(entry) {
+  if (entry instanceof File) return [{ name: entry.name, blob: entry }];
+  if (entry.isFile) {
+    const file = await new Promise((resolve, reject) => entry.file(resolve, reject));
+    return [{ name: entry.fullPath.replace(/^\//, ''), blob: file }];
+  }
+  const reader = entry.createReader();
+  const found = [];
+  // A reader hands out a folder in batches; an empty batch is the end.
+  for (;;) {
+    const batch = await new Promise((resolve, reject) => reader.readEntries(resolve, reject));
+    if (!batch.length) return found.flat();
+    found.push(...(await Promise.all(batch.map(walk))));
+  }
+}
+
+/** The files of a file button. */
+export const chosen = (list) => [...list].map((file) => ({ name: file.webkitRelativePath || file.name, blob: file }));
+
+/**
+ * Downloads what `?src=` names; of a .gltf also the buffers beside it.
+ * @param {string} address https, or of this very site
+ */
+export async function fetchSource(address, progress) {
+  const budget = { left: MOST_DOWNLOAD };
+  const url = allowed(address, location.href);
+  const main = await download(url, budget, progress);
+  if (!/\.gltf$/i.test(url.pathname)) return [main];
+  let buffers = [];
+  try {
+    buffers = JSON.parse(await main.blob.text()).buffers ?? [];
+  } catch {
+    throw new Error(`“${main.name}” is not a glTF file.`);
+  }
+  const beside = buffers.map((buffer) => buffer?.uri).filter((uri) => typeof uri === 'string' && !uri.startsWith('data:'));
+  const files = [main];
+  for (const uri of new Set(beside)) {
+    const file = await download(allowed(uri, url), budget, progress);
+    files.push({ ...file, name: decodeURIComponent(uri) });
+  }
+  return files;
+}
+
+function allowed(address, base) {
+  const url = URL.canParse(address, base) ? new URL(address, base) : null;
+  if (!url || (url.protocol !== 'https:' && url.origin !== location.origin)) {
+    throw new Error('The link names a file that is neither on this site nor on an https address, so it was not opened.');
+  }
+  return url;
+}
+
+async function download(url, budget, progress) {
+  const name = decodeURIComponent(url.pathname.split('/').pop()) || url.hostname;
+  let response;
+  try {
+    response = await fetch(url, { credentials: url.origin === location.origin ? 'same-origin' : 'omit', referrerPolicy: 'no-referrer' });
+  } catch {
+    throw new Error(`“${name}” could not be loaded from ${url.hostname}. The host may not allow other sites to read it.`);
+  }
+  if (!response.ok) throw new Error(`“${name}” could not be loaded from ${url.hostname} (answer ${response.status}).`);
+  const size = Number(response.headers.get('content-length')) || 0;
+  const pieces = [];
+  let got = 0;
+  for (const reader = response.body.getReader(); ;) {
+    const { done, value } = await reader.read();
+    if (done) break;
+    got += value.length;
+    budget.left -= value.length;
+    if (budget.left < 0) {
+      reader.cancel();
+      throw new Error(`“${name}” is larger than ${megabytes(MOST_DOWNLOAD)}, so it was not loaded from the link.`);
+    }
+    pieces.push(value);
+    progress({ stage: 'downloading', done: size ? Math.min(1, got / size) : 0 });
+  }
+  return { name, blob: new Blob(pieces) };
+}

@@ -1,0 +1,120 @@
+/**
+ * The state of the page in the hash of its address: `#v1;zoo=horse;step=parts;…`. Only what differs from the
+ * default is written. Files of the visitor's own cannot travel in a link.
+ */
+import { VIEWS } from './steps/views.js';
+import { STEPS } from './steps/index.js';
+import { isValid } from './steps/parameters.js';
+
+const VERSION = 'v1';
+/** Browsers limit how often the address may be replaced, in milliseconds. */
+const WRITE_EVERY = 400;
+/** The hash holds the creature's recipe under these names. */
+const RECIPE = ['faces', 'poses', 'exact'];
+
+/** @returns {Record<string, string>} empty if there is no state, or one of another version */
+export function readLink(hash = location.hash) {
+  const [version, ...fields] = hash.replace(/^#/, '').split(';');
+  if (version !== VERSION) return {};
+  return Object.fromEntries(fields.map((field) => field.split('=')).filter((pair) => pair.length === 2)
+    .map(([name, value]) => [name, decode(value)]));
+}
+
+function decode(text) {
+  try {
+    return decodeURIComponent(text);
+  } catch {
+    return '';
+  }
+}
+
+/** The state of the page as a hash. */
+export function writeLink(app, timeline) {
+  const fields = {};
+  const { source, about } = app;
+  if (source?.kind === 'zoo') {
+    fields.zoo = source.recipe.name;
+    for (const name of RECIPE) if (source.recipe[name] !== about.recipe[name]) fields[name] = source.recipe[name];
+  }
+  if (source?.kind === 'src') {
+    for (const [name, value] of Object.entries(source.options)) {
+      if (JSON.stringify(value) !== JSON.stringify(about.options[name])) fields[`import.${name}`] = JSON.stringify(value);
+    }
+  }
+  for (const [name, value] of Object.entries(app.changes)) fields[`p.${name}`] = JSON.stringify(value);
+  if (app.wanted != null) fields.parts = app.wanted;
+  if (app.step !== 'parts') fields.step = app.step;
+  if (app.view !== 'parts') fields.view = app.view;
+  if (!app.panel) fields.panel = 'away';
+  if (timeline.reference) fields.t = 'reference';
+  else if (!timeline.playing && timeline.poses > 1) fields.t = timeline.time.toFixed(2);
+  const camera = app.stage.kept.camera;
+  if (camera) fields.camera = [...camera].map((value) => Number(value.toPrecision(4))).join();
+  const text = Object.entries(fields).map(([name, value]) => `;${name}=${encodeURIComponent(value).replaceAll('%2C', ',')}`).join('');
+  return `#${VERSION}${text}`;
+}
+
+/** Puts what a link says into the page, as far as it makes sense there; what opens is the caller's business. */
+export function applyLink(fields, app) {
+  app.changes = {};
+  for (const [name, value] of Object.entries(fields)) {
+    const parsed = parse(value);
+    if (name.startsWith('p.') && isValid(name.slice(2), parsed)) app.changes[name.slice(2)] = parsed;
+  }
+  app.step = STEPS.some(({ id }) => id === fields.step) ? fields.step : 'parts';
+  app.view = VIEWS.some(({ id }) => id === fields.view) ? fields.view : 'parts';
+  app.changed('parameters', 'step', 'view');
+}
+
+/** The recipe of the creature that a link names; null if it names none that exists. */
+export function recipeOf(fields, { creatures, recipe }) {
+  if (!creatures.includes(fields.zoo)) return null;
+  const wanted = { name: fields.zoo };
+  for (const name of RECIPE) {
+    const value = parse(fields[name]);
+    if (typeof value === typeof recipe[name]) wanted[name] = value;
+  }
+  return wanted;
+}
+
+/** The import options that a link names. */
+export function optionsOf(fields, { options }) {
+  const wanted = {};
+  for (const name of Object.keys(options)) {
+    const value = parse(fields[`import.${name}`]);
+    if (value !== undefined) wanted[name] = value;
+  }
+  return wanted;
+}
+
+/** Number of parts, time and camera that a link names, each undefined if it does not. */
+export function placeOf(fields) {
+  const camera = fields.camera?.split(',').map(Number);
+  const time = Number(fields.t);
+  return {
+    parts: Number.isInteger(Number(fields.parts)) && fields.parts > 0 ? Number(fields.parts) : undefined,
+    reference: fields.t === 'reference',
+    time: fields.t !== undefined && Number.isFinite(time) ? time : undefined,
+    camera: camera?.length >= 6 && camera.every(Number.isFinite) ? camera : undefined,
+  };
+}
+
+function parse(text) {
+  try {
+    return JSON.parse(text);
+  } catch {
+    return undefined;
+  }
+}
+
+/** Keeps the address up to date. */
+export function followState(app, timeline) {
+  let timer;
+  const write = () => {
+    timer = undefined;
+    if (app.sequence) history.replaceState(null, '', writeLink(app, timeline));
+  };
+  const later = () => (timer ??= setTimeout(write, WRITE_EVERY));
+  app.on('link', later);
+  app.stage.addEventListener('camera', later);
+}

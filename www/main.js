@@ -1,0 +1,148 @@
+/** Puts the page together: engine, stage, controls; then opens what the address asks for, or the first creature. */
+import { App } from './app.js';
+import { bench } from './bench.js';
+import { dock } from './dock.js';
+import { iconButton, show } from './dom.js';
+import { drops } from './drop.js';
+import { Engine } from './engine.js';
+import { chosen } from './files.js';
+import { keys } from './keys.js';
+import { applyLink, followState, optionsOf, placeOf, readLink, recipeOf } from './link.js';
+import { notices } from './notice.js';
+import { panel } from './panel.js';
+import { pointers } from './pointer.js';
+import { progressBar } from './progress.js';
+import { rail } from './rail.js';
+import { copyLink, saveParts, savePicture } from './save.js';
+import { Stage } from './stage.js';
+import { tag } from './tag.js';
+import { theme } from './theme.js';
+import { Timeline } from './timeline.js';
+import { compile } from './wasm.js';
+
+const NARROW = matchMedia('(max-width: 720px)');
+const query = new URLSearchParams(location.search);
+const bundle = (name) => compile(new URL(`../pkg/${name}_bg.wasm`, import.meta.url));
+const element = (id) => document.getElementById(id);
+
+// Both downloads start at once; the creature is made while the picture is still being set up.
+const engine = new Engine(bundle('worker'));
+const stage = new Stage(element('stage'), bundle('page'), query.get('backend'));
+const app = new App(engine, stage);
+const ready = { segmented: false, pictured: false };
+
+stage.addEventListener('drawn', () => {
+  if (ready.pictured) return;
+  ready.pictured = true;
+  performance.mark('first-picture');
+});
+stage.addEventListener('no-gpu', () => {
+  element('no-gpu').hidden = false;
+  if (stage.canvas) stage.canvas.hidden = true;
+});
+stage.addEventListener('trouble', ({ error }) => app.say(error.message));
+stage.started.catch((error) => {
+  element('no-gpu').hidden = false;
+  console.error(error);
+});
+
+const timeline = new Timeline(element('timeline'), app);
+const turnTheme = theme((dark) => (stage.dark = dark));
+notices(element('notice'), app);
+progressBar(element('progress'), app);
+pointers(stage, tag(element('tag'), app));
+drops(element('veil'), app);
+const showKeys = keys({ app, stage, timeline, sheet: element('keys') });
+show(element('tools'),
+  iconButton('link', 'Copy a link to exactly this', () => copyLink(app, timeline)),
+  iconButton('picture', 'Save the picture', () => savePicture(app)),
+  iconButton('save', 'Save the parts as GLB', () => saveParts(app)),
+  iconButton('frame', 'All of it in the picture (F)', () => stage.move('frame')),
+  iconButton('sun', 'Light or dark', turnTheme),
+  iconButton('keys', 'Keys (?)', showKeys));
+
+// Two frames later what was painted is on the screen.
+app.on('result', () => app.result && requestAnimationFrame(() => requestAnimationFrame(() => (ready.segmented = true))));
+app.on('panel step result source', () => requestAnimationFrame(keepClear));
+new ResizeObserver(keepClear).observe(element('stage'));
+
+/** Tells the picture which margins the controls cover. */
+function keepClear() {
+  const box = element('stage').getBoundingClientRect();
+  const covers = (id) => !element(id).hidden && element(id).getBoundingClientRect();
+  const side = covers('panel');
+  const below = document.querySelector('.below').getBoundingClientRect();
+  const bottom = box.bottom - below.top;
+  const right = side && !NARROW.matches ? box.right - side.left : 0;
+  const left = NARROW.matches ? 0 : element('rail').getBoundingClientRect().right - box.left;
+  const top = NARROW.matches ? document.querySelector('.brand').getBoundingClientRect().bottom - box.top : 0;
+  stage.insets = [left, top, right, bottom].map((inset) => Math.max(0, Math.round(inset)));
+}
+
+async function start() {
+  app.about = await engine.about;
+  await openAddress();
+  rail(element('rail'), app);
+  panel(element('panel'), app);
+  dock(element('dock'), app);
+  followState(app, timeline);
+  keepClear();
+  window.addEventListener('hashchange', openAddress);
+}
+
+/** Opens what the address asks for and starts on the first creature otherwise. Does not wait for the parts. */
+async function openAddress() {
+  const fields = readLink();
+  const place = placeOf(fields);
+  applyLink(fields, app);
+  app.setPanel(fields.panel !== 'away' && !NARROW.matches);
+  app.addEventListener('source', () => goTo(place), { once: true });
+  const address = query.get('src');
+  const opened = address
+    ? openOr(address, optionsOf(fields, app.about))
+    : app.openCreature(recipeOf(fields, app.about) ?? {});
+  opened.catch((error) => app.say(error.message));
+}
+
+/** Opens what `?src=` names, or the first creature with a word about what went wrong. */
+async function openOr(address, options) {
+  if ((await app.openAddress(address, options)) || app.sequence) return;
+  const { notice } = app;
+  await app.openCreature({});
+  if (notice) app.say(notice.text);
+}
+
+/** The number of parts, the moment and the camera of a link. */
+function goTo({ parts, time, reference, camera }) {
+  if (parts !== undefined) app.wanted = parts;
+  if (camera) stage.camera = camera;
+  if (reference) timeline.toggleReference();
+  if (time !== undefined) {
+    timeline.setPlaying(false);
+    timeline.seek(time);
+  }
+}
+
+/** For tests and for measuring. */
+window.sinew = {
+  get ready() {
+    return ready.segmented;
+  },
+  state: () => ({
+    backend: stage.backend,
+    source: app.sequence && { name: app.sequence.name, ...app.sequence.sizes },
+    parts: app.result?.parts.length ?? null,
+    residual: app.result?.rigid_residual ?? null,
+    step: app.step,
+    view: app.view,
+    playing: timeline.playing,
+    busy: app.busy && { stage: app.busy.stage, done: app.busy.done },
+    error: app.notice?.kind === 'error' ? app.notice.text : null,
+    time: timeline.reference ? -1 : timeline.time,
+    panel: app.panel,
+  }),
+  open: (files) => app.openFiles(chosen(files)),
+  bench: () => bench(app),
+};
+
+start().catch((error) => app.say(error.message));

@@ -1,0 +1,21 @@
+/** The panel of the step in force; it can be put away. On a phone it is a sheet from below. */
+import { h, iconButton, show } from './dom.js';
+import { STEPS } from './steps/index.js';
+
+/** @param {HTMLElement} host @param {import('./app.js').App} app */
+export function panel(host, app) {
+  const close = iconButton('close', 'Put the panel away (P)', () => app.setPanel(false));
+  const bodies = new Map(STEPS.map((step) => [step.id, h('div', { class: 'panel-body' }, step.build(app))]));
+  show(host, close, ...bodies.values());
+  const open = iconButton('panel', 'Show the panel (P)', () => app.setPanel(true), { class: 'icon-button panel-opener' });
+  host.after(open);
+  const update = () => {
+    for (const [id, body] of bodies) body.hidden = id !== app.step;
+    host.setAttribute('aria-label', STEPS.find(({ id }) => id === app.step).title);
+    host.hidden = !app.panel;
+    open.hidden = app.panel;
+    document.documentElement.dataset.panel = app.panel ? 'open' : 'away';
+  };
+  app.on('step panel', update);
+  update();
+}

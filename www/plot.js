@@ -1,0 +1,113 @@
+/** Small plots as SVG. Sizes are in units of the view box; text is set by the style sheet. */
+import { h, svg } from './dom.js';
+import { number } from './format.js';
+
+const WIDTH = 304;
+const HEIGHT = 112;
+const FOOT = 20;
+const BINS = 44;
+/** A histogram spans at most this many powers of ten: below is only the rounding of the input. */
+const MOST_DECADES = 5;
+
+/**
+ * Histogram of a field over the logarithm of its values, the share inside a set in the accent colour, with one
+ * value marked.
+ * @param {Float32Array} field
+ * @param {Uint8Array} inside
+ * @param {{value: number, label: string}|null} mark
+ */
+export function histogram(field, inside, mark, label) {
+  const logs = Float64Array.from(field, (value) => Math.log10(value));
+  const finite = logs.filter(Number.isFinite).sort();
+  if (finite.length < 2 || finite[0] === finite.at(-1)) return h('p', { class: 'small faint' }, 'Nothing deforms: every face moves with its neighbours.');
+  const high = finite[Math.ceil(0.999 * finite.length) - 1];
+  const low = Math.min(Math.max(finite[Math.floor(0.002 * finite.length)], high - MOST_DECADES), high - 1e-6);
+  const bins = Array.from({ length: BINS }, () => [0, 0]);
+  logs.forEach((log, face) => {
+    const bin = Math.min(BINS - 1, Math.max(0, Math.floor(((log - low) / (high - low)) * BINS)));
+    bins[Number.isNaN(bin) ? 0 : bin][inside[face] ? 1 : 0]++;
+  });
+  // What is smaller than the scale piles up in the first bin, which may be cut off at the top.
+  const most = Math.max(1, ...bins.slice(1).map(([a, b]) => a + b));
+  const floor = HEIGHT - FOOT;
+  const scale = (floor - 12) / most;
+  const width = WIDTH / BINS;
+  const bar = (i, from, size, kind) => size > 0 &&
+    from * scale < floor && svg('rect', { x: (i * width + 0.5).toFixed(2), width: (width - 1).toFixed(2), y: Math.max(0, floor - (from + size) * scale).toFixed(2), height: Math.min(size * scale, floor - from * scale).toFixed(2), class: kind });
+  const x = (value) => Math.min(WIDTH, Math.max(0, ((Math.log10(value) - low) / (high - low)) * WIDTH));
+  return frame(label,
+    ...bins.flatMap(([outside, within], i) => [bar(i, 0, outside, 'bar'), bar(i, outside, within, 'bar accent')]),
+    base(),
+    ...decades(low, high).map((power) => tick(x(10 ** power), number(10 ** power, 1))),
+    mark && [
+      svg('line', { x1: x(mark.value), x2: x(mark.value), y1: 0, y2: floor, class: 'mark' }),
+      svg('text', { x: x(mark.value) + (x(mark.value) > WIDTH - 64 ? -4 : 4), y: 9, class: 'mark-text', 'text-anchor': x(mark.value) > WIDTH - 64 ? 'end' : 'start' }, mark.label),
+    ]);
+}
+
+function decades(low, high) {
+  const all = [];
+  for (let power = Math.ceil(low); power <= high; power++) all.push(power);
+  const every = Math.ceil(all.length / 4) || 1;
+  return all.filter((power) => (power - all[0]) % every === 0);
+}
+
+/**
+ * Cost of losing a part, over the number of parts, with the number in force marked. A click chooses a number.
+ * @param {{parts: number, cost: number}[]} curve
+ */
+export function costCurve(curve, current, choose, label) {
+  const shown = curve.filter(({ parts }) => parts <= 40).sort((a, b) => a.parts - b.parts);
+  if (shown.length < 2) return null;
+  const floor = HEIGHT - FOOT;
+  const costs = shown.map(({ cost }) => Math.log10(Math.max(cost, 1e-12)));
+  const low = Math.min(...costs);
+  const high = Math.max(...costs, low + 1e-6);
+  const first = shown[0].parts;
+  const last = Math.max(shown.at(-1).parts, first + 1);
+  const x = (parts) => 8 + ((parts - first) / (last - first)) * (WIDTH - 16);
+  const y = (log) => floor - 8 - ((log - low) / (high - low)) * (floor - 20);
+  const points = shown.map(({ parts }, i) => [x(parts), y(costs[i])]);
+  const at = shown.findIndex(({ parts }) => parts === current);
+  const plot = frame(label,
+    base(),
+    svg('polyline', { points: points.map((p) => p.map((v) => v.toFixed(1)).join()).join(' '), class: 'curve' }),
+    ...points.map(([px, py]) => svg('circle', { cx: px, cy: py, r: 2, class: 'dot' })),
+    at >= 0 && [
+      svg('line', { x1: points[at][0], x2: points[at][0], y1: points[at][1], y2: floor, class: 'mark' }),
+      svg('circle', { cx: points[at][0], cy: points[at][1], r: 4.5, class: 'dot accent' }),
+    ],
+    ...ticksBetween(first, last).map((parts) => tick(x(parts), String(parts))));
+  plot.classList.add('clickable');
+  plot.addEventListener('click', (event) => {
+    const box = plot.getBoundingClientRect();
+    const share = ((event.clientX - box.left) / box.width) * WIDTH;
+    choose(Math.round(first + ((share - 8) / (WIDTH - 16)) * (last - first)));
+  });
+  return plot;
+}
+
+function ticksBetween(first, last) {
+  const step = [1, 2, 5, 10, 20].find((size) => (last - first) / size <= 6) ?? 50;
+  const ticks = [];
+  for (let value = Math.ceil(first / step) * step; value <= last; value += step) ticks.push(value);
+  return ticks;
+}
+
+const base = () => svg('line', { x1: 0, x2: WIDTH, y1: HEIGHT - FOOT, y2: HEIGHT - FOOT, class: 'axis' });
+
+const tick = (x, text) => svg('text', { x: Math.min(WIDTH - 6, Math.max(6, x)), y: HEIGHT - 5, class: 'tick', 'text-anchor': 'middle' }, text);
+
+const frame = (label, ...children) =>
+  svg('svg', { viewBox: `0 0 ${WIDTH} ${HEIGHT}`, class: 'plot', role: 'img', 'aria-label': label }, ...children.flat());
+
+/** A colour map as a bar. @param {Uint8Array} colours sRGB triples */
+export function colourBar(colours) {
+  const width = colours.length / 3;
+  const canvas = h('canvas', { class: 'colour-bar', width, height: 1, 'aria-hidden': 'true' });
+  const context = canvas.getContext('2d');
+  const image = context.createImageData(width, 1);
+  for (let i = 0; i < width; i++) image.data.set([...colours.subarray(3 * i, 3 * i + 3), 255], 4 * i);
+  context.putImageData(image, 0, 0);
+  return canvas;
+}

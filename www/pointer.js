@@ -1,0 +1,92 @@
+/** Mouse, pen and touch on the canvas: orbit, pan, zoom, and pointing at a face. */
+
+/** A touch that moves less than this is a tap, in pixels. */
+const TAP = 6;
+const WHEEL = 0.0016;
+
+/**
+ * @param {import('./stage.js').Stage} stage
+ * @param {(at: {x: number, y: number, pick: Float32Array}|null) => void} point hears what lies under the pointer
+ */
+export function pointers(stage, point) {
+  const held = new Map();
+  let start = null;
+  let asked = null;
+
+  const place = (event) => {
+    const box = stage.canvas.getBoundingClientRect();
+    return { x: event.clientX - box.left, y: event.clientY - box.top };
+  };
+
+  /** Picking costs a walk through the mesh: once a frame is enough. */
+  const ask = (at) => {
+    if (!asked) requestAnimationFrame(() => {
+      const { x, y } = asked;
+      asked = null;
+      const pick = held.size ? undefined : stage.pick(x, y);
+      stage.hover(pick ? pick[0] : -1);
+      point(pick ? { x, y, pick } : null);
+    });
+    asked = at;
+  };
+
+  const leave = () => {
+    stage.hover(-1);
+    point(null);
+  };
+
+  const down = (event) => {
+    stage.canvas.setPointerCapture(event.pointerId);
+    held.set(event.pointerId, place(event));
+    start = place(event);
+    leave();
+  };
+
+  const move = (event) => {
+    const now = place(event);
+    const before = held.get(event.pointerId);
+    if (!before) {
+      if (event.pointerType !== 'touch') ask(now);
+      return;
+    }
+    const [dx, dy] = [now.x - before.x, now.y - before.y];
+    if (held.size === 1) {
+      const pans = event.shiftKey || event.buttons & 2 || event.buttons & 4;
+      stage.move(pans ? 'pan' : 'orbit', dx, dy);
+    } else if (held.size === 2) {
+      const other = [...held].find(([id]) => id !== event.pointerId)[1];
+      const spread = (a) => Math.max(1, Math.hypot(a.x - other.x, a.y - other.y));
+      stage.move('pan', dx / 2, dy / 2);
+      stage.move('zoom', spread(now) / spread(before), (now.x + other.x) / 2, (now.y + other.y) / 2);
+    }
+    held.set(event.pointerId, now);
+  };
+
+  const up = (event) => {
+    const now = place(event);
+    held.delete(event.pointerId);
+    const moved = start && Math.hypot(now.x - start.x, now.y - start.y);
+    if (event.type === 'pointerup' && held.size === 0 && moved < TAP) ask(now);
+  };
+
+  const wheel = (event) => {
+    event.preventDefault();
+    const { x, y } = place(event);
+    const lines = event.deltaMode === WheelEvent.DOM_DELTA_LINE ? 16 : 1;
+    // A pinch on a touchpad arrives as a wheel with Control held, in much smaller numbers.
+    stage.move('zoom', Math.exp(-event.deltaY * lines * WHEEL * (event.ctrlKey ? 6 : 1)), x, y);
+  };
+
+  const listen = () => {
+    const { canvas } = stage;
+    if (!canvas) return;
+    canvas.addEventListener('pointerdown', down);
+    canvas.addEventListener('pointermove', move);
+    canvas.addEventListener('pointerup', up);
+    canvas.addEventListener('pointercancel', up);
+    canvas.addEventListener('pointerleave', leave);
+    canvas.addEventListener('wheel', wheel, { passive: false });
+    canvas.addEventListener('contextmenu', (event) => event.preventDefault());
+  };
+  stage.addEventListener('canvas', listen);
+}

@@ -1,0 +1,132 @@
+/** The step Parts: its numbers, its parameters and its lesson. */
+import { choice, facts, fold, select, slider, toggle } from '../controls.js';
+import { h, show } from '../dom.js';
+import { duration, number, percent, perMille, plural } from '../format.js';
+import { lesson } from '../lesson.js';
+import { costCurve, histogram } from '../plot.js';
+import { METHODS, reading, SLIDERS, SMOOTHINGS } from './parameters.js';
+import { MARK } from './views.js';
+import { warnings } from './warnings.js';
+
+export const partsStep = {
+  id: 'parts',
+  title: 'Parts',
+  summary: (app) => (app.result ? plural(app.result.parts.length, 'part') : ''),
+  build,
+};
+
+/** @param {import('../app.js').App} app */
+function build(app) {
+  const quality = h('div');
+  const noticed = h('div', { class: 'stack' });
+  const curve = h('div');
+  const deformation = h('div');
+  const table = h('div');
+  const folds = [
+    parameterFold(app),
+    fold('Deformation', { content: [deformation] }),
+    fold('How it works', { load: () => lesson('parts') }),
+    fold('Each part', { open: true, content: [table] }),
+  ];
+  const showResult = () => {
+    const { result } = app;
+    for (const box of [quality, noticed, curve, ...folds]) box.hidden = !result;
+    if (!result) return;
+    show(quality, qualityFacts(result));
+    show(noticed, ...warnings(app, result.warnings));
+    show(curve, ...curvePlot(app));
+    show(deformation,
+      histogram(result.deformation, result.deformable, epsilonMark(result), 'Histogram of the deformation distance'),
+      h('p', { class: 'small faint' }, 'Faces by deformation distance, logarithmic. Coloured: the deformable set A.'));
+    show(table, partTable(app));
+  };
+  app.on('result', showResult);
+  showResult();
+  return h('div', { class: 'step' }, h('h2', {}, 'Parts'), quality, noticed, curve, ...folds);
+}
+
+function curvePlot(app) {
+  const { curve, parts } = app.result;
+  const plot = costCurve(curve, parts.length, (count) => app.setParts(count), 'Cost of losing a part, by number of parts');
+  return plot ? [h('h3', {}, 'What one part less costs'), plot,
+    h('p', { class: 'small faint' }, 'Added residual, logarithmic, over the number of parts. Click to choose.')] : [];
+}
+
+function qualityFacts(result) {
+  const seconds = result.seconds.reduce((sum, [, value]) => sum + value, 0);
+  return facts([
+    ['Parts', String(result.parts.length)],
+    ['Residual', perMille(result.rigid_residual),
+      'Rms distance of faces from where their part’s best rigid motion puts them, in thousandths of the diagonal'],
+    ['Before smoothing', perMille(result.residual_before_smoothing)],
+    seconds > 0 && ['Computed in', duration(seconds), result.seconds.map(([name, value]) => `${name}: ${duration(value)}`).join('\n')],
+  ]);
+}
+
+/** The deformation distance that as many faces exceed as ε made deformable. */
+function epsilonMark({ deformation, deformable, epsilon }) {
+  const faces = deformable.reduce((sum, value) => sum + value, 0);
+  if (!faces || faces === deformable.length) return null;
+  return { value: deformation.toSorted()[deformation.length - faces], label: `ε = ${number(epsilon)}` };
+}
+
+const MOST_ROWS = 60;
+
+function partTable(app) {
+  const { colours } = app;
+  const { parts, labels } = app.result;
+  const row = (part, index) => h('tr', { tabindex: '0', on: {
+    pointerenter: () => highlight(app, labels, index),
+    focus: () => highlight(app, labels, index),
+    pointerleave: () => app.paint(),
+    blur: () => app.paint(),
+  } },
+  h('th', { scope: 'row' },
+    h('span', { class: 'chip', style: { 'background-color': `rgb(${colours.slice(3 * index, 3 * index + 3).join()})` } }), String(index + 1)),
+  h('td', { class: 'number' }, percent(part.area)),
+  h('td', { class: 'number' }, perMille(part.residual)));
+  return h('div', {},
+    h('table', {},
+      h('thead', {}, h('tr', {}, h('th', { scope: 'col' }, 'Part'), h('th', { scope: 'col', class: 'number' }, 'Area'), h('th', { scope: 'col', class: 'number' }, 'Residual'))),
+      h('tbody', {}, ...parts.slice(0, MOST_ROWS).map(row))),
+    parts.length > MOST_ROWS && h('p', { class: 'small faint' }, `and ${plural(parts.length - MOST_ROWS, 'smaller part')}`));
+}
+
+function highlight(app, labels, part) {
+  const faces = [];
+  labels.forEach((label, face) => label === part && faces.push(face));
+  app.stage.mark(Uint32Array.from(faces), MARK.highlight);
+}
+
+function parameterFold(app) {
+  const sliders = SLIDERS.map((definition) => {
+    const control = slider({
+      ...definition,
+      reading: (value) => reading(definition, value),
+      change: (value) => app.setParameter(definition.name, value),
+      reset: () => app.setParameter(definition.name, null),
+    });
+    return { definition, control };
+  });
+  const method = choice('Method', METHODS, null, (value) => app.setParameter('method', value), 'stacked');
+  const smoothing = select('Smooth boundaries', SMOOTHINGS, null, (value) => app.setParameter('smoothing', value));
+  const exact = toggle('Exact distances', false, (on) => app.setParameter('exact', on),
+    'Average distances from all pairs of faces instead of from landmarks. Slow: made to check the fast answer.');
+  const reset = h('button', { type: 'button', class: 'text-button', on: { click: () => app.resetParameters() } }, 'Reset all');
+  const update = () => {
+    const { parameters, changes, result } = app;
+    for (const { definition, control } of sliders) {
+      const chosen = parameters[definition.name];
+      const value = chosen ?? (result ? definition.found(result) : null);
+      const text = value == null ? 'auto' : reading(definition, value);
+      control.set(value ?? definition.low, chosen == null && value != null ? `${text} · auto` : text, definition.name in changes);
+    }
+    method.querySelector(`[value="${parameters.method}"]`).checked = true;
+    smoothing.querySelector('select').value = parameters.smoothing;
+    exact.querySelector('input').checked = parameters.exact;
+    reset.hidden = Object.keys(changes).length === 0;
+  };
+  app.on('parameters result', update);
+  update();
+  return fold('Parameters', { content: [h('div', { class: 'stack' }, method, ...sliders.map(({ control }) => control.element), smoothing, exact, reset)] });
+}

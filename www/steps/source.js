@@ -1,0 +1,92 @@
+/** The step Source: what is open, and how to open something else. */
+import { choice, facts, fold, select, toggle } from '../controls.js';
+import { h, show } from '../dom.js';
+import { chosen } from '../files.js';
+import { count, duration, number, plural, title } from '../format.js';
+import { lesson } from '../lesson.js';
+import { warnings } from './warnings.js';
+
+export const sourceStep = {
+  id: 'source',
+  title: 'Source',
+  summary(app) {
+    if (!app.sequence) return '';
+    const { length } = app.sequence.warnings;
+    return length ? `${nameOf(app)} · ${plural(length, 'note')}` : nameOf(app);
+  },
+  build,
+};
+
+const ACCEPT = '.glb,.gltf,.bin,.obj,.off,.ply,model/gltf-binary,model/gltf+json';
+const DETAIL = [2_000, 6_000, 12_000, 40_000, 120_000];
+const RATES = [6, 12, 24, 30, 60];
+const REFERENCES = [['bind', 'bind pose'], ['nodes', 'as placed in the file'], ['first-frame', 'first pose']];
+
+/** @param {import('../app.js').App} app */
+function build(app) {
+  const current = h('div', { class: 'stack' });
+  const gallery = h('div');
+  const update = () => {
+    const { source, sequence } = app;
+    if (!sequence) return;
+    show(current,
+      h('p', { class: 'name' }, nameOf(app)),
+      facts([
+        ['Vertices', count(sequence.sizes.vertices)],
+        ['Faces', count(sequence.sizes.faces)],
+        ['Poses', count(sequence.sizes.poses)],
+        sequence.timed && ['Length', duration(sequence.times.at(-1) - sequence.times[0])],
+        ['Diagonal', number(sequence.diagonal), 'Of the bounding box of the reference pose, in the units of the file'],
+      ]),
+      ...warnings(app, sequence.warnings),
+      source.kind === 'zoo' ? creatureOptions(app) : isGltf(source) && animationOptions(app));
+    show(gallery, choice('Creature', app.about.creatures.map((name) => [name, title(name)]),
+      source.kind === 'zoo' ? source.recipe.name : null, (name) => app.openCreature({ name })));
+  };
+  app.on('source', update);
+  update();
+  return h('div', { class: 'step' }, h('h2', {}, 'Source'), current,
+    h('h3', {}, 'Creatures'), gallery,
+    h('h3', {}, 'Your own'), fileButton(app),
+    h('p', { class: 'small faint' }, 'Or drop it anywhere: a glTF or GLB with an animation, a folder, or numbered OBJ, OFF or PLY files. It never leaves this computer.'),
+    fold('What a source is', { load: () => lesson('source') }));
+}
+
+function fileButton(app) {
+  const input = h('input', { type: 'file', multiple: true, accept: ACCEPT, class: 'hidden', id: 'files', on: {
+    change: () => {
+      if (input.files.length) app.openFiles(chosen(input.files));
+      input.value = '';
+    },
+  } });
+  return h('div', { class: 'file' }, input, h('label', { for: 'files', class: 'button' }, 'Open files'));
+}
+
+function creatureOptions(app) {
+  const { recipe } = app.source;
+  const sizes = [...new Set([...DETAIL, recipe.faces])].sort((a, b) => a - b);
+  return h('div', { class: 'stack' },
+    select('Detail', sizes.map((faces) => [String(faces), plural(faces, 'face')]), String(recipe.faces),
+      (faces) => app.openCreature({ ...recipe, faces: Number(faces) })),
+    toggle('One bone for each vertex', recipe.exact, (exact) => app.openCreature({ ...recipe, exact }),
+      'Every vertex follows exactly one bone, so that the true parts are known exactly'));
+}
+
+function animationOptions(app) {
+  const { options } = app.source;
+  const { clips, clip } = app.sequence;
+  const rate = options.sampling?.rate;
+  const rates = [...new Set([...RATES, ...(rate ? [rate] : [])])].sort((a, b) => a - b);
+  return h('div', { class: 'stack' },
+    clips.length > 0 && select('Clip', clips.map(({ name, seconds }, i) => [String(i), `${/^\d+$/.test(name) ? `Clip ${i + 1}` : name} · ${duration(seconds)}`]),
+      String(clip), (index) => app.reopen({ clip: index })),
+    select('Poses', [...rates.map((value) => [String(value), `${value} a second`]), ['keys', 'at every key']],
+      rate ? String(rate) : 'keys', (value) => app.reopen({ sampling: value === 'keys' ? 'keys' : { rate: Number(value) } })),
+    select('Reference', REFERENCES, options.reference, (reference) => app.reopen({ reference })),
+    toggle('Weld seams', options.weld, (weld) => app.reopen({ weld }), 'Join vertices that agree in every pose'));
+}
+
+/** A creature has a name, a file its own. */
+const nameOf = ({ source, sequence }) => (source.kind === 'zoo' ? title(sequence.name) : sequence.name);
+
+const isGltf = ({ files }) => files?.some(({ name }) => /\.(glb|gltf)$/i.test(name));

@@ -1,0 +1,57 @@
+/**
+ * The worker: starts the engine from the compiled module that the page sends first, then answers its messages,
+ * one at a time and in order. See engine.js for the messages.
+ */
+import init, { Engine } from '../pkg/worker.js';
+
+/** Progress is told at most this often, in milliseconds. */
+const PROGRESS_EVERY = 60;
+
+let engine;
+
+const operations = {
+  start: async ({ module }) => {
+    await init({ module_or_path: module });
+    engine = new Engine();
+    return Engine.about();
+  },
+  open: ({ files, options }) => engine.open(files, options),
+  zoo: ({ recipe }) => engine.zoo(recipe),
+  restore: ({ kept }) => engine.restore(kept),
+  segment: ({ parameters }, progress) => engine.segment(parameters, progress),
+  parts: ({ parameters, parts }, progress) => engine.parts(parameters, parts, progress),
+  export: ({ labels, colours }) => engine.export(labels, colours),
+};
+
+let queue = Promise.resolve();
+self.addEventListener('message', ({ data }) => {
+  queue = queue.then(() => answer(data));
+});
+
+async function answer({ id, operation, ...payload }) {
+  try {
+    const result = await operations[operation](payload, progressOf(id));
+    self.postMessage({ id, result }, buffersOf(result));
+  } catch (error) {
+    // The engine throws sentences. Anything else, such as “unreachable”, means that it is broken for good.
+    if (typeof error === 'string') self.postMessage({ id, error });
+    else self.postMessage({ id, crash: String(error) });
+  }
+}
+
+function progressOf(id) {
+  let last = -Infinity;
+  return (stage, done) => {
+    const now = performance.now();
+    if (now - last < PROGRESS_EVERY) return;
+    last = now;
+    self.postMessage({ id, progress: { stage, done } });
+  };
+}
+
+/** The buffers of all typed arrays in a result, so that they move instead of being copied. */
+function buffersOf(value, found = new Set()) {
+  if (ArrayBuffer.isView(value)) found.add(value.buffer);
+  else if (value && typeof value === 'object') for (const entry of Object.values(value)) buffersOf(entry, found);
+  return [...found];
+}
