@@ -35,20 +35,13 @@ fn rotate<const N: usize>(a: &mut [[f64; N]; N], v: &mut [[f64; N]; N], p: usize
     let t = if theta.is_finite() { theta.signum() / (theta.abs() + theta.hypot(1.0)) } else { 0.0 };
     let c = 1.0 / t.hypot(1.0);
     let s = t * c;
-    for k in 0..N {
-        let (kp, kq) = (a[k][p], a[k][q]);
-        a[k][p] = c * kp - s * kq;
-        a[k][q] = s * kp + c * kq;
+    let turned = |x: f64, y: f64| (c * x - s * y, s * x + c * y);
+    for row in a.iter_mut().chain(v.iter_mut()) {
+        (row[p], row[q]) = turned(row[p], row[q]);
     }
-    for k in 0..N {
-        let (pk, qk) = (a[p][k], a[q][k]);
-        a[p][k] = c * pk - s * qk;
-        a[q][k] = s * pk + c * qk;
-    }
-    for row in v.iter_mut() {
-        let (kp, kq) = (row[p], row[q]);
-        row[p] = c * kp - s * kq;
-        row[q] = s * kp + c * kq;
+    let (above, below) = (a[p], a[q]);
+    for (k, (x, y)) in above.into_iter().zip(below).enumerate() {
+        (a[p][k], a[q][k]) = turned(x, y);
     }
 }
 

@@ -8,6 +8,9 @@ use super::SegmentationError;
 use super::shortest_paths::{NONE, ShortestPaths};
 use crate::mesh::DualGraph;
 
+/// What the distance to a face on another piece counts in a sum that must stay finite.
+const OUT_OF_REACH: f64 = 1e12;
+
 /// A way to average distances from faces to partitions.
 pub trait Averages {
     /// Takes notice of #F partition numbers ([`NONE`]: in no partition). `keep_going` hears how far along it is (0 to 1)
@@ -135,12 +138,16 @@ impl Averages for Exact<'_> {
             let distance = ShortestPaths::from_face(self.graph, self.weights, g as u32).distance;
             for (label, sign) in [(from, -1.0), (to, 1.0)] {
                 if label != NONE {
-                    self.sizes[label as usize] = (self.sizes[label as usize] as i64 + sign as i64) as usize;
                     for (f, &d) in distance.iter().enumerate() {
-                        // Faces out of reach: on another piece, where no partition of this piece is wanted anyway.
-                        self.sums[f * partitions + label as usize] += sign * d.min(1e12);
+                        self.sums[f * partitions + label as usize] += sign * d.min(OUT_OF_REACH);
                     }
                 }
+            }
+            if from != NONE {
+                self.sizes[from as usize] -= 1;
+            }
+            if to != NONE {
+                self.sizes[to as usize] += 1;
             }
             self.labels[g] = to;
         }

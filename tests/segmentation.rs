@@ -1,0 +1,288 @@
+//! Near-rigid segmentation against ground truth, against its literal self, and on meshes as they are.
+#![cfg(not(target_arch = "wasm32"))]
+
+#[path = "common/agreement.rs"]
+mod agreement;
+#[path = "common/hinge.rs"]
+mod hinge;
+#[path = "common/npz.rs"]
+mod npz;
+
+use agreement::agreement;
+use glam::{DMat3, DVec3};
+use proptest::prelude::*;
+use sinew::mesh::DualGraph;
+use sinew::observer::Silent;
+use sinew::segmentation::{Method, Parameters, Segmentation, SegmentationError, Segmenter, Smoothing, segment};
+use sinew::sequence::{Pose, Sequence};
+use sinew::zoo::{self, Creature, Recipe};
+
+fn creature(name: &str, faces: usize, exact: bool) -> Creature {
+    zoo::make(&Recipe { name: name.into(), faces, poses: 12, exact }).expect("a creature of that name")
+}
+
+fn by_default(sequence: &Sequence) -> Segmentation {
+    segment(sequence, &Parameters::default(), &mut Silent).expect("a segmentation")
+}
+
+/// Every part of every connected piece of the mesh hangs together.
+fn assert_parts_in_one_piece(sequence: &Sequence, labels: &[u32]) {
+    let graph = DualGraph::new(sequence.faces());
+    let (piece, _) = graph.pieces();
+    let (region, regions) = graph.pieces_where(|a, b| labels[a as usize] == labels[b as usize]);
+    let mut pairs: Vec<(u32, u32)> = piece.iter().copied().zip(labels.iter().copied()).collect();
+    pairs.sort_unstable();
+    pairs.dedup();
+    assert_eq!(pairs.len(), regions, "a part fell apart ({} regions)", region.iter().max().map_or(0, |m| m + 1));
+}
+
+#[test]
+fn exactly_skinned_creatures_come_back_as_their_bones() {
+    for name in zoo::NAMES {
+        let creature = creature(name, 8_000, true);
+        let result = by_default(&creature.sequence);
+        let agreement = agreement(&creature.sequence, &result.labels, &creature.labels);
+        println!("{name}: {} parts for {} bones, agreement {agreement:.3}", result.parts.len(), creature.parts.len());
+        assert!(agreement >= 0.95, "{name}: {agreement}");
+        assert_parts_in_one_piece(&creature.sequence, &result.labels);
+    }
+}
+
+#[test]
+fn smoothly_skinned_creatures_come_close_to_their_bones() {
+    for name in zoo::NAMES {
+        let creature = creature(name, 8_000, false);
+        let result = by_default(&creature.sequence);
+        let agreement = agreement(&creature.sequence, &result.labels, &creature.labels);
+        println!("{name}: {} parts for {} bones, agreement {agreement:.3}", result.parts.len(), creature.parts.len());
+        assert!(agreement >= 0.8, "{name}: {agreement}");
+        assert!(result.rigid_residual <= 1.1 * result.residual_before_smoothing, "smoothing costs too much");
+    }
+}
+
+#[test]
+fn a_coarser_or_finer_mesh_has_the_same_parts() {
+    for faces in [3_000, 40_000] {
+        let creature = creature("person", faces, true);
+        let result = by_default(&creature.sequence);
+        assert_eq!(result.parts.len(), creature.parts.len(), "{faces} faces");
+        assert!(agreement(&creature.sequence, &result.labels, &creature.labels) >= 0.95, "{faces} faces");
+    }
+}
+
+#[test]
+fn a_hinge_is_cut_at_the_hinge() {
+    let (positions, faces) = hinge::bar(24);
+    let points = |p: &[[f64; 3]]| p.iter().copied().map(DVec3::from_array).collect::<Vec<_>>();
+    let poses = (1..4).map(|t| Pose {
+        name: t.to_string(),
+        time: f64::from(t),
+        positions: points(&hinge::bend(&positions, 0.3 * f64::from(t))),
+    });
+    let sequence = Sequence::new("hinge", faces, points(&positions), poses.collect()).expect("a sequence");
+    let result = by_default(&sequence);
+    assert_eq!(result.parts.len(), 2);
+    for (face, &label) in sequence.faces().iter().zip(&result.labels) {
+        let x: f64 = face.iter().map(|&v| positions[v as usize][0]).sum::<f64>() / 3.0;
+        assert!(x.abs() < 0.1 || (label == result.labels[0]) == (x < 0.0), "a face at {x} is on the wrong side");
+    }
+}
+
+/// The sequence with every pose replaced by a rigid motion of the reference.
+fn rigidly_moved(sequence: &Sequence) -> Sequence {
+    let poses = (0..4)
+        .map(|t| {
+            let turn = DMat3::from_euler(glam::EulerRot::XYZ, 0.3 * f64::from(t), 0.1, 1.0 - f64::from(t));
+            let positions = sequence.reference().iter().map(|&p| turn * p + DVec3::splat(f64::from(t))).collect();
+            Pose { name: t.to_string(), time: f64::from(t), positions }
+        })
+        .collect();
+    Sequence::new("rigid", sequence.faces().to_vec(), sequence.reference().to_vec(), poses).expect("a sequence")
+}
+
+/// Two sequences side by side as one mesh of two pieces; the poses of the first are repeated where there are fewer.
+fn side_by_side(a: &Sequence, b: &Sequence) -> Sequence {
+    let shift = |p: &DVec3| *p + DVec3::new(3.0, 0.0, 0.0);
+    let join = |x: &[DVec3], y: &[DVec3]| x.iter().copied().chain(y.iter().map(shift)).collect::<Vec<_>>();
+    let first = a.reference().len() as u32;
+    let faces = a.faces().iter().copied().chain(b.faces().iter().map(|f| f.map(|v| v + first))).collect();
+    let poses = b
+        .poses()
+        .iter()
+        .zip(a.poses().iter().cycle())
+        .map(|(q, p)| Pose { positions: join(&p.positions, &q.positions), ..q.clone() })
+        .collect();
+    Sequence::new("two", faces, join(a.reference(), b.reference()), poses).expect("a sequence")
+}
+
+#[test]
+fn what_moves_as_one_is_one_part_however_many_pieces_it_has() {
+    let person = creature("person", 2_000, false).sequence;
+    let one = rigidly_moved(&person);
+    assert_eq!(by_default(&one).parts.len(), 1);
+    let two = rigidly_moved(&side_by_side(&person, &person));
+    assert_eq!(by_default(&two).parts.len(), 1);
+    let still = Sequence::new("still", one.faces().to_vec(), one.reference().to_vec(), Vec::new()).expect("a mesh");
+    let result = by_default(&still);
+    assert_eq!(result.parts.len(), 1);
+    assert!(result.warnings.iter().any(|w| w.code == "no-poses"));
+}
+
+#[test]
+fn two_bodies_that_move_apart_are_two_parts() {
+    let person = creature("person", 2_000, false).sequence;
+    let rigid = rigidly_moved(&person);
+    let still = Sequence::new("still", person.faces().to_vec(), person.reference().to_vec(), {
+        rigid.poses().iter().map(|p| Pose { positions: person.reference().to_vec(), ..p.clone() }).collect()
+    });
+    let result = by_default(&side_by_side(&still.expect("a sequence"), &rigid));
+    assert_eq!(result.parts.len(), 2);
+    assert!(result.rigid_residual < 1e-5);
+}
+
+#[test]
+fn the_paper_by_the_letter_covers_the_mesh_with_parts_in_one_piece() {
+    let horse = creature("horse", 4_000, false);
+    let result = segment(&horse.sequence, &Parameters::paper(), &mut Silent).expect("a segmentation");
+    assert!(result.parts.len() > 3, "{} parts", result.parts.len());
+    assert!((result.parts.iter().map(|p| p.area).sum::<f64>() - 1.0).abs() < 1e-9);
+    assert!(result.steps.rounds.len() > 1, "clustering takes rounds");
+    assert_parts_in_one_piece(&horse.sequence, &result.labels);
+}
+
+#[test]
+fn landmarks_agree_with_all_pairs() {
+    let horse = creature("horse", 2_500, false).sequence;
+    for method in [Method::Tree, Method::Paper] {
+        let quick = Parameters { method, ..Parameters::default() };
+        let exact = Parameters { exact: true, ..quick.clone() };
+        let [quick, exact] = [quick, exact].map(|p| segment(&horse, &p, &mut Silent).expect("a segmentation"));
+        let agreement = agreement(&horse, &quick.labels, &exact.labels);
+        println!("{method:?}: {} and {} parts, agreement {agreement:.3}", quick.parts.len(), exact.parts.len());
+        assert!(agreement >= 0.97, "{method:?}: {agreement}");
+    }
+}
+
+#[test]
+fn the_same_input_gives_the_same_bytes() {
+    let horse = creature("horse", 6_000, false).sequence;
+    for parameters in [Parameters::default(), Parameters::paper()] {
+        let [mut a, mut b] = [(), ()].map(|()| segment(&horse, &parameters, &mut Silent).expect("a segmentation"));
+        a.seconds.clear();
+        b.seconds.clear();
+        assert!(a == b);
+    }
+}
+
+#[test]
+fn any_number_of_parts_can_be_asked_for() {
+    let horse = creature("horse", 6_000, false).sequence;
+    let segmenter = Segmenter::new(&horse, &Parameters::default(), &mut Silent).expect("a segmentation");
+    let mut before = f64::INFINITY;
+    for wanted in [1, 2, 5, 9, 16, 30] {
+        let result = segmenter.segmentation(Some(wanted));
+        assert_eq!(result.parts.len(), wanted);
+        assert!(result.rigid_residual < before, "more parts explain more");
+        before = result.rigid_residual;
+        assert_parts_in_one_piece(&horse, &result.labels);
+    }
+}
+
+#[test]
+fn progress_rises_and_stopping_stops() {
+    let horse = creature("horse", 3_000, false).sequence;
+    let mut heard = Vec::new();
+    segment(&horse, &Parameters::default(), &mut |_: &'static str, done: f64| {
+        heard.push(done);
+        true
+    })
+    .expect("a segmentation");
+    assert!(heard.windows(2).all(|w| w[0] <= w[1]) && heard.len() > 10);
+    let mut calls = 0;
+    let stopped = segment(&horse, &Parameters::default(), &mut |_: &'static str, _: f64| {
+        calls += 1;
+        calls < 8
+    });
+    assert_eq!(stopped.err(), Some(SegmentationError::Cancelled));
+}
+
+#[test]
+fn parameters_out_of_range_are_refused_by_name() {
+    let horse = creature("snake", 1_000, false).sequence;
+    let wrong = [
+        Parameters { delta: f64::NAN, ..Parameters::default() },
+        Parameters { alpha: 1.5, ..Parameters::default() },
+        Parameters { epsilon: Some(-1.0), ..Parameters::default() },
+        Parameters { parts: Some(0), ..Parameters::default() },
+    ];
+    for parameters in wrong {
+        assert!(matches!(segment(&horse, &parameters, &mut Silent), Err(SegmentationError::Parameter { .. })));
+    }
+}
+
+#[test]
+fn no_faces_is_an_error_in_words() {
+    let empty = Sequence::new("empty", Vec::new(), vec![DVec3::ZERO], Vec::new()).expect("a sequence");
+    assert_eq!(segment(&empty, &Parameters::default(), &mut Silent).err(), Some(SegmentationError::NoFaces));
+}
+
+fn assert_sane(sequence: &Sequence, result: &Segmentation) {
+    assert_eq!(result.labels.len(), sequence.faces().len());
+    assert!(result.labels.iter().all(|&l| (l as usize) < result.parts.len()));
+    assert!(result.rigid_residual.is_finite() && result.rigid_residual >= 0.0);
+    for part in &result.parts {
+        assert!(part.faces > 0 && part.area.is_finite() && part.residual.is_finite());
+    }
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig { cases: 200, failure_persistence: None, ..ProptestConfig::default() })]
+
+    /// Triangle soups with shared and doubled faces, edges with many faces, flat faces, and poses that tear and collapse.
+    #[test]
+    fn no_soup_is_too_bad(
+        faces in prop::collection::vec(prop::array::uniform3(0..14u32), 1..60),
+        points in prop::collection::vec(prop::array::uniform3(-2..3i8), 14 * 4),
+        poses in 0..4usize, method in prop_oneof![Just(Method::Tree), Just(Method::Paper)], exact in any::<bool>(),
+        huge in prop_oneof![Just(1.0), Just(1e-200), Just(1e150)],
+    ) {
+        let points: Vec<DVec3> = points.iter().map(|p| DVec3::from_array(p.map(|x| f64::from(x) * huge))).collect();
+        let pose = |t: usize| Pose {
+            name: t.to_string(), time: 0.0, positions: points[14 * t..14 * (t + 1)].to_vec(),
+        };
+        let sequence =
+            Sequence::new("soup", faces, points[..14].to_vec(), (1..=poses).map(pose).collect()).expect("a sequence");
+        for smoothing in [Smoothing::Deformable, Smoothing::Printed] {
+            let parameters = Parameters { method, exact, smoothing, ..Parameters::default() };
+            let result = segment(&sequence, &parameters, &mut Silent).expect("a segmentation");
+            assert_sane(&sequence, &result);
+        }
+    }
+}
+
+#[test]
+fn public_sequences_reach_their_bars() {
+    let Some(data) = npz::data("segmentation of public sequences") else { return };
+    let check = |name: &str, most_parts: usize, residual: f64, agrees: f64| {
+        let sequence = npz::sequence(&data.join(name));
+        let result = by_default(&sequence);
+        let weights = data.join(name.replace(".npz", "_weights.npz"));
+        let agreement = if weights.exists() {
+            agreement(&sequence, &result.labels, &npz::true_parts(&weights, sequence.faces()))
+        } else {
+            1.0
+        };
+        println!(
+            "{name}: {} parts, residual {:.4}, agreement {agreement:.3}",
+            result.parts.len(),
+            result.rigid_residual
+        );
+        assert!(result.parts.len() <= most_parts && result.rigid_residual <= residual && agreement >= agrees, "{name}");
+        assert!(result.rigid_residual <= 1.1 * result.residual_before_smoothing, "{name}: smoothing");
+        assert_parts_in_one_piece(&sequence, &result.labels);
+    };
+    check("seq/cylinder-gt.npz", 5, 0.0300, 0.95);
+    check("seq/wolf-gt.npz", 25, 0.0041, 0.70);
+    check("sumner/horse.npz", 17, 0.0075, 0.0);
+    check("seq/horse-collapse_18.npz", 24, 0.0150, 0.0);
+}
