@@ -127,8 +127,8 @@ impl Averages for Exact<'_> {
             self.sums = vec![0.0; faces * partitions];
             self.sizes = vec![0; partitions];
         }
-        for g in 0..faces {
-            let (from, to) = (self.labels[g], labels[g]);
+        for (g, (own, &to)) in self.labels.iter_mut().zip(labels).enumerate() {
+            let from = std::mem::replace(own, to);
             if from == to {
                 continue;
             }
@@ -149,7 +149,6 @@ impl Averages for Exact<'_> {
             if to != NONE {
                 self.sizes[to as usize] += 1;
             }
-            self.labels[g] = to;
         }
         Ok(())
     }

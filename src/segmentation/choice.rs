@@ -20,9 +20,9 @@ const MOST: usize = 24;
 /// A joint is where one more merge costs so many times as much as the next cheaper one (squared residuals): a clear one
 /// anywhere up to [`MOST_JOINTS`] parts, a fair one only a little beyond the number that is enough.
 const CLEAR_JOINT: f64 = 16.0;
-const FAIR_JOINT: f64 = 4.0;
+const FAIR_JOINT: f64 = 2.5;
 const MOST_JOINTS: usize = 80;
-const LITTLE_BEYOND: f64 = 1.6;
+const LITTLE_BEYOND: f64 = 1.75;
 
 /// The number of parts at which the merge tree is best cut.
 ///

@@ -39,6 +39,8 @@ pub struct Part {
 pub struct Steps {
     /// #F: the largest deformation distance (Eq. 4) of a face to a neighbour, at unit diagonal.
     pub deformation: Vec<f64>,
+    /// #F: the largest weight (Eq. 5) of a face's dual edges, which ε is compared with.
+    pub weight: Vec<f64>,
     /// #F: 1 where a face is in the deformable set A (§3.2 step 1).
     pub deformable: Vec<u8>,
     /// The ε that was used.

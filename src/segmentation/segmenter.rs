@@ -37,7 +37,7 @@ const REFINEMENTS: usize = 12;
 
 /// How strongly rigidity holds a boundary against smoothing at first, how often the hold is tightened, and the growth of
 /// the residual that smoothing may cost.
-const PULL: f64 = 50.0;
+const PULL: f64 = 30.0;
 const TIGHTER: f64 = 4.0;
 const TRIES: usize = 4;
 const SMOOTHING_COST: f64 = 1.08;
@@ -171,6 +171,7 @@ impl Segmenter {
         watch.end();
         let mut steps = Steps {
             deformation: face_maximum(&graph, &distances),
+            weight: face_maximum(&graph, &weights),
             deformable,
             epsilon,
             gamma: gamma.unwrap_or(0.0),

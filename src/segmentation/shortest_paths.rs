@@ -99,10 +99,10 @@ mod tests {
             let all = floyd(12, &edges);
             let mut paths = ShortestPaths::from_sources(&graph, &weights, [(s, 0)]);
             paths.lower(&graph, &weights, [(t, 1)]);
-            for f in 0..12 {
-                let expected = all[s as usize][f].min(all[t as usize][f]);
-                prop_assert!(paths.distance[f] == expected || (paths.distance[f] - expected).abs() < 1e-12);
-                prop_assert_eq!(paths.label[f] == NONE, expected.is_infinite());
+            let expected = all[s as usize].iter().zip(&all[t as usize]).map(|(a, b)| a.min(*b));
+            for ((expected, &found), &label) in expected.zip(&paths.distance).zip(&paths.label) {
+                prop_assert!(found == expected || (found - expected).abs() < 1e-12);
+                prop_assert_eq!(label == NONE, expected.is_infinite());
             }
         }
     }

@@ -29,6 +29,9 @@ pub struct Input<'a> {
 const BAND: f64 = 0.02;
 const BAND_FACES: u32 = 3;
 
+/// Rms distance from a rigid motion (at unit diagonal) below which a boundary is not held back from being smooth.
+const UNSEEN: f64 = 0.003;
+
 /// #E prices of cutting each dual edge (Eq. 8, in mean edge lengths).
 pub fn capacities(input: &Input<'_>, alpha: f64, smoothing: Smoothing) -> Vec<f64> {
     let mean = |values: &[f64]| values.iter().sum::<f64>() / values.len().max(1) as f64;
@@ -49,7 +52,8 @@ pub fn capacities(input: &Input<'_>, alpha: f64, smoothing: Smoothing) -> Vec<f6
 /// depend on how finely the mesh is divided. 0: the letter of the paper.
 pub fn smooth(input: &Input<'_>, capacity: &[f64], labels: &mut [u32], parts: usize, pull: f64) {
     let moments = input.faces.moments(labels, parts);
-    let mean_square = moments.iter().map(motion::residual).sum::<f64>() / labels.len().max(1) as f64;
+    let mean_square = moments.iter().map(motion::residual).sum::<f64>() / labels.len().max(1) as f64
+        + UNSEEN * UNSEEN * input.faces.pose_count() as f64;
     let motions: Vec<_> = moments.iter().map(motion::best_motion).collect();
     let mean_length = input.edge_length.iter().sum::<f64>() / input.edge_length.len().max(1) as f64;
     let pull = pull / (mean_square * mean_length);
