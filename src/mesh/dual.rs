@@ -107,6 +107,20 @@ impl DualGraph {
         (piece, count as usize)
     }
 
+    /// The pairs of different labels, the lower first, that share an edge under #F labels; in rising order.
+    pub fn touching(&self, labels: &[u32]) -> Vec<(u32, u32)> {
+        let mut pairs: Vec<(u32, u32)> = self
+            .edges
+            .iter()
+            .map(|edge| edge.faces.map(|f| labels[f as usize]))
+            .filter(|[a, b]| a != b)
+            .map(|[a, b]| (a.min(b), a.max(b)))
+            .collect();
+        pairs.sort_unstable();
+        pairs.dedup();
+        pairs
+    }
+
     /// #E geodesic distances between the centroids of adjacent faces: the straight line across the shared edge when
     /// the two triangles are unfolded into one plane. Two corners that only touch fall back to the straight distance.
     pub fn geodesic_lengths(&self, faces: &[[u32; 3]], positions: &[DVec3]) -> Vec<f64> {
@@ -162,6 +176,7 @@ mod tests {
         assert_eq!(graph.edges().len(), 6);
         assert!((0..4).all(|f| graph.neighbours(f).len() == 3));
         assert_eq!(graph.pieces(), (vec![0; 4], 1));
+        assert_eq!(graph.touching(&[1, 0, 1, 2]), [(0, 1), (0, 2), (1, 2)]);
     }
 
     #[test]

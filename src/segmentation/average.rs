@@ -4,6 +4,7 @@
 
 use super::gradients::Gradients;
 use crate::linalg::polar::{frobenius_squared, rotation};
+use crate::sequence::Pose;
 use glam::{DMat3, DVec3};
 
 /// Average gradients of one region, one a pose.
@@ -21,12 +22,7 @@ impl AverageGradient {
 
 /// Averages over `region` by area, pose by pose: the rotation nearest to the mean of the faces' rotations, times the
 /// mean of their stretches.
-pub fn average_gradient(
-    gradients: &Gradients<'_>,
-    areas: &[f64],
-    poses: &[&[DVec3]],
-    region: &[u32],
-) -> AverageGradient {
+pub fn average_gradient(gradients: &Gradients<'_>, areas: &[f64], poses: &[Pose], region: &[u32]) -> AverageGradient {
     let average = |positions: &[DVec3]| {
         let (mut rotations, mut stretches, mut total) = (DMat3::ZERO, DMat3::ZERO, 0.0);
         for &f in region {
@@ -39,5 +35,5 @@ pub fn average_gradient(
         }
         if total > 0.0 { rotation(rotations) * (stretches * (1.0 / total)) } else { DMat3::IDENTITY }
     };
-    AverageGradient { poses: poses.iter().map(|positions| average(positions)).collect() }
+    AverageGradient { poses: poses.iter().map(|pose| average(&pose.positions)).collect() }
 }

@@ -1,6 +1,7 @@
 //! The distance metric (Eq. 4 and 5): how differently two neighbouring faces deform, and how far apart they are.
 
 use super::gradients::Gradients;
+use super::statistics::{mean, over, quantile};
 use crate::linalg::polar::frobenius_squared;
 use crate::mesh::DualGraph;
 use glam::{DMat3, DVec3};
@@ -65,7 +66,6 @@ pub fn edge_weights(geodesic: &[f64], deformation: &[f64], delta: f64, scale: Sc
         Scale::Mean => f64::INFINITY,
         Scale::Winsorised => quantile(deformation, 0.95),
     };
-    let over = |x: f64, mean: f64| if mean > 0.0 { x / mean } else { 0.0 };
     let mean_length = mean(geodesic.iter().copied());
     let mean_deformation = mean(deformation.iter().map(|d| d.min(ceiling)));
     let weight = |(&g, &d): (&f64, &f64)| delta * over(g, mean_length) + (1.0 - delta) * over(d, mean_deformation);
@@ -77,21 +77,6 @@ pub fn edge_weights(geodesic: &[f64], deformation: &[f64], delta: f64, scale: Sc
 pub fn rigidity(stretch: &[f64]) -> Vec<f64> {
     let scale = (2.0 * quantile(stretch, 0.5)).max(LEAST_STRETCH);
     stretch.iter().map(|s| 1.0 / (1.0 + (s / scale).powi(2))).collect()
-}
-
-/// The value below which the share `q` (0 to 1) of the values lies; 0 for none.
-pub fn quantile(values: &[f64], q: f64) -> f64 {
-    if values.is_empty() {
-        return 0.0;
-    }
-    let mut sorted = values.to_vec();
-    let rank = ((sorted.len() - 1) as f64 * q).round() as usize;
-    *sorted.select_nth_unstable_by(rank, f64::total_cmp).1
-}
-
-fn mean(values: impl ExactSizeIterator<Item = f64>) -> f64 {
-    let n = values.len();
-    if n == 0 { 0.0 } else { values.sum::<f64>() / n as f64 }
 }
 
 #[cfg(test)]
@@ -108,12 +93,5 @@ mod tests {
     fn a_rigid_sequence_has_finite_weights() {
         let weights = edge_weights(&[1.0, 2.0], &[0.0, 0.0], 0.2, Scale::Mean);
         assert!(weights.iter().all(|w| w.is_finite()));
-    }
-
-    #[test]
-    fn quantiles_are_order_statistics() {
-        assert_eq!(quantile(&[3.0, 1.0, 2.0], 0.5), 2.0);
-        assert_eq!(quantile(&[3.0, 1.0, 2.0], 1.0), 3.0);
-        assert_eq!(quantile(&[], 0.5), 0.0);
     }
 }

@@ -7,9 +7,10 @@ use super::harmonic::Regions;
 use super::shortest_paths::ShortestPaths;
 use super::{Feature, SegmentationError};
 use crate::mesh::DualGraph;
-use glam::DVec3;
+use crate::sequence::Pose;
 
-/// Where extraction stops, whatever the stopping share of area: the merge tree has nothing to gain from more.
+/// Where extraction stops, whatever the stopping share of area: the merge tree has nothing to gain from more, and
+/// clustering by the letter takes memory for faces × partitions.
 const MOST_FEATURES: usize = 1000;
 
 /// What extraction needs to know of the mesh.
@@ -22,8 +23,8 @@ pub struct Input<'a> {
     pub areas: &'a [f64],
     /// Deformation gradients.
     pub gradients: &'a Gradients<'a>,
-    /// #T poses of #V positions.
-    pub poses: &'a [&'a [DVec3]],
+    /// The #T poses.
+    pub poses: &'a [Pose],
 }
 
 /// The thresholds of §3.2.

@@ -12,22 +12,26 @@ const FLAT: f64 = 1e-10;
 /// What every pose needs: the inverse frames of the reference pose.
 pub struct Gradients<'a> {
     faces: &'a [[u32; 3]],
+    scale: f64,
     inverse: Vec<DMat3>,
     donor: Vec<u32>,
     degenerate: Vec<u32>,
 }
 
 impl<'a> Gradients<'a> {
-    /// Prepares #F faces. A face without area has no gradient of its own: it takes that of the nearest face (in steps
+    /// Prepares #F faces over #V reference positions. Lengths are multiplied by `scale`, which keeps their squares in the
+    /// range of numbers (1 over the diagonal) and changes no gradient.
+    ///
+    /// A face without area has no gradient of its own: it takes that of the nearest face (in steps
     /// across edges) that has one, or none (the identity) where there is none on its piece.
-    pub fn new(faces: &'a [[u32; 3]], reference: &[DVec3], graph: &DualGraph) -> Self {
+    pub fn new(faces: &'a [[u32; 3]], reference: &[DVec3], scale: f64, graph: &DualGraph) -> Self {
         const NONE: u32 = u32::MAX;
         let mut inverse = vec![DMat3::IDENTITY; faces.len()];
         let mut donor = vec![NONE; faces.len()];
         let mut queue = Vec::with_capacity(faces.len());
         let mut degenerate = Vec::new();
         for (f, &corners) in faces.iter().enumerate() {
-            let triangle = face::corners(reference, corners);
+            let triangle = scaled(face::corners(reference, corners), scale);
             if is_flat(triangle) {
                 degenerate.push(f as u32);
             } else {
@@ -48,7 +52,7 @@ impl<'a> Gradients<'a> {
                 }
             }
         }
-        Self { faces, inverse, donor, degenerate }
+        Self { faces, scale, inverse, donor, degenerate }
     }
 
     /// The faces without area in the reference pose.
@@ -60,7 +64,10 @@ impl<'a> Gradients<'a> {
     pub fn of(&self, positions: &[DVec3], face: u32) -> DMat3 {
         let donor = self.donor[face as usize];
         match self.faces.get(donor as usize) {
-            Some(&corners) => frame(face::corners(positions, corners)) * self.inverse[donor as usize],
+            Some(&corners) => {
+                let triangle = scaled(face::corners(positions, corners), self.scale);
+                frame(triangle) * self.inverse[donor as usize]
+            }
             None => DMat3::IDENTITY,
         }
     }
@@ -69,6 +76,10 @@ impl<'a> Gradients<'a> {
     pub fn all(&self, positions: &[DVec3]) -> Vec<DMat3> {
         (0..self.faces.len() as u32).map(|f| self.of(positions, f)).collect()
     }
+}
+
+fn scaled(triangle: [DVec3; 3], scale: f64) -> [DVec3; 3] {
+    triangle.map(|p| p * scale)
 }
 
 fn is_flat([a, b, c]: [DVec3; 3]) -> bool {
@@ -104,7 +115,7 @@ mod tests {
     fn a_rotation_is_its_own_gradient_and_a_flat_face_borrows_it() {
         let (faces, reference) = tent();
         let graph = DualGraph::new(&faces);
-        let gradients = Gradients::new(&faces, &reference, &graph);
+        let gradients = Gradients::new(&faces, &reference, 1.0, &graph);
         assert_eq!(gradients.degenerate(), [2]);
         let turn = DMat3::from_euler(glam::EulerRot::XYZ, 0.4, -1.0, 2.0);
         let moved: Vec<_> = reference.iter().map(|&p| turn * p + DVec3::ONE).collect();
@@ -116,7 +127,7 @@ mod tests {
     #[test]
     fn a_uniform_scale_scales_all_three_directions() {
         let (faces, reference) = tent();
-        let gradients = Gradients::new(&faces, &reference, &DualGraph::new(&faces));
+        let gradients = Gradients::new(&faces, &reference, 0.1, &DualGraph::new(&faces));
         let moved: Vec<_> = reference.iter().map(|&p| 3.0 * p).collect();
         assert!(frobenius(gradients.of(&moved, 0) - DMat3::from_diagonal(DVec3::splat(3.0))) < 1e-12);
     }

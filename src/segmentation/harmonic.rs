@@ -4,6 +4,7 @@
 //! Rhaleb Zayer, Christian Rössl, Zachi Karni, Hans-Peter Seidel. Harmonic guidance for surface deformation. Computer
 //! Graphics Forum 24(3), 2005.
 
+use super::statistics::mean;
 use crate::linalg::conjugate_gradient;
 use crate::mesh::DualGraph;
 
@@ -24,7 +25,7 @@ impl<'a> Regions<'a> {
     /// Regions over the dual graph with #E weights of Eq. 5; the field conducts as 1 / weight.
     pub fn new(graph: &'a DualGraph, weights: &'a [f64]) -> Self {
         // A weight of 0 (two coincident centroids) would conduct infinitely well.
-        let mean = weights.iter().sum::<f64>() / weights.len().max(1) as f64;
+        let mean = mean(weights.iter().copied());
         let floor = if mean > 0.0 { 1e-6 * mean } else { 1.0 };
         Self { graph, weights, floor, slot: vec![OUTSIDE; graph.face_count()] }
     }

@@ -25,6 +25,7 @@ mod clustering;
 mod deformation;
 mod features;
 mod finest;
+mod geometry;
 mod gradients;
 mod harmonic;
 mod max_flow;
@@ -36,6 +37,8 @@ mod result;
 mod segmenter;
 mod shortest_paths;
 mod smoothing;
+mod statistics;
+mod stopwatch;
 
 pub use parameters::{Method, Parameters, Smoothing};
 pub use result::{Feature, Merge, Part, Segmentation, SegmentationError, Steps};

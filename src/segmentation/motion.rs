@@ -23,9 +23,10 @@ impl FaceMotion {
     pub fn new(sequence: &Sequence, scale: f64, weight: Vec<f64>) -> Self {
         let (faces, poses) = (sequence.faces(), sequence.poses().len());
         let centroids = |positions: &[DVec3]| -> Vec<Vec3> {
-            let mut all: Vec<DVec3> = faces.iter().map(|&f| face::centroid(face::corners(positions, f))).collect();
+            let scaled = |f: &[u32; 3]| face::centroid(face::corners(positions, *f).map(|p| p * scale));
+            let all: Vec<DVec3> = faces.iter().map(scaled).collect();
             let middle = all.iter().copied().sum::<DVec3>() / all.len().max(1) as f64;
-            all.iter_mut().map(|c| ((*c - middle) * scale).as_vec3()).collect()
+            all.iter().map(|&c| (c - middle).as_vec3()).collect()
         };
         let mut moved = vec![Vec3::ZERO; faces.len() * poses];
         for (t, pose) in sequence.poses().iter().enumerate() {
@@ -108,7 +109,8 @@ pub fn best_motion(moments: &PartMoments) -> Vec<Rigid32> {
 
 /// Squared residual of a part, summed over all poses.
 pub fn residual(moments: &PartMoments) -> f64 {
-    moments.iter().map(Moments::residual).sum()
+    // A sum of nothing would be −0.
+    moments.iter().map(Moments::residual).fold(0.0, |sum, r| sum + r)
 }
 
 /// Squared residual of the union of two parts.

@@ -10,7 +10,7 @@ use std::collections::VecDeque;
 const BETTER: f32 = 0.999;
 
 /// Improves #F labels `0..parts` for at most `rounds` fits; stops when a round gains less than a thousandth. Every label
-/// stays in one piece on each connected piece of the mesh. Returns the weighted squared residual.
+/// stays in one piece on each connected piece of the mesh. Every face counts alike.
 pub fn refine(
     graph: &DualGraph,
     weights: &[f64],
@@ -18,7 +18,7 @@ pub fn refine(
     labels: &mut Vec<u32>,
     parts: usize,
     rounds: usize,
-) -> f64 {
+) {
     let total = |labels: &[u32]| faces.moments(labels, parts).iter().map(motion::residual).sum::<f64>();
     let mut best = total(labels);
     for _ in 0..rounds {
@@ -36,7 +36,6 @@ pub fn refine(
             break;
         }
     }
-    best
 }
 
 /// Moves faces between fixed motions until none wants to; changes spread from the boundaries as far as they go.

@@ -5,22 +5,17 @@
 //! motions explains better pulls towards that part, so that a smooth boundary does not cost rigidity.
 
 use super::Smoothing;
+use super::geometry::Geometry;
 use super::motion::{self, FaceMotion};
-use crate::mesh::DualGraph;
-use std::collections::{BTreeMap, BTreeSet, VecDeque};
+use super::statistics::{mean, over};
+use std::collections::{BTreeMap, VecDeque};
 
-/// The mesh, as smoothing sees it.
+/// The moving mesh, as smoothing sees it.
 pub struct Input<'a> {
-    /// The dual graph.
-    pub graph: &'a DualGraph,
+    /// The reference pose.
+    pub geometry: &'a Geometry,
     /// #E deformation distances (Eq. 4).
     pub deformation: &'a [f64],
-    /// #E geodesic distances between centroids, at unit diagonal.
-    pub geodesic: &'a [f64],
-    /// #E lengths of the shared mesh edges, at unit diagonal.
-    pub edge_length: &'a [f64],
-    /// #F areas, at unit diagonal.
-    pub areas: &'a [f64],
     /// How the faces move.
     pub faces: &'a FaceMotion,
 }
@@ -34,15 +29,14 @@ const UNSEEN: f64 = 0.003;
 
 /// #E prices of cutting each dual edge (Eq. 8, in mean edge lengths).
 pub fn capacities(input: &Input<'_>, alpha: f64, smoothing: Smoothing) -> Vec<f64> {
-    let mean = |values: &[f64]| values.iter().sum::<f64>() / values.len().max(1) as f64;
-    let (mean_deformation, mean_length) = (mean(input.deformation), mean(input.edge_length));
-    let over = |x: f64, mean: f64| if mean > 0.0 { x / mean } else { 0.0 };
+    let edge_length = &input.geometry.edge_length;
+    let (mean_deformation, mean_length) = (mean(input.deformation.iter().copied()), mean(edge_length.iter().copied()));
     let price = |(&d, &length): (&f64, &f64)| {
         let d = over(d, mean_deformation);
         let first = if smoothing == Smoothing::Printed { d } else { 1.0 / (1.0 + d) };
         alpha * first + (1.0 - alpha) * over(length, mean_length)
     };
-    input.deformation.iter().zip(input.edge_length).map(price).collect()
+    input.deformation.iter().zip(edge_length).map(price).collect()
 }
 
 /// Smooths the boundary between every two parts that touch, in the order of their numbers.
@@ -55,17 +49,10 @@ pub fn smooth(input: &Input<'_>, capacity: &[f64], labels: &mut [u32], parts: us
     let mean_square = moments.iter().map(motion::residual).sum::<f64>() / labels.len().max(1) as f64
         + UNSEEN * UNSEEN * input.faces.pose_count() as f64;
     let motions: Vec<_> = moments.iter().map(motion::best_motion).collect();
-    let mean_length = input.edge_length.iter().sum::<f64>() / input.edge_length.len().max(1) as f64;
+    let mean_length = mean(input.geometry.edge_length.iter().copied());
     let pull = pull / (mean_square * mean_length);
     let pull = if pull.is_finite() { pull } else { 0.0 };
-    let mut pairs = BTreeSet::new();
-    for edge in input.graph.edges() {
-        let [a, b] = edge.faces.map(|f| labels[f as usize]);
-        if a != b {
-            pairs.insert((a.min(b), a.max(b)));
-        }
-    }
-    for (a, b) in pairs {
+    for (a, b) in input.geometry.graph.touching(labels) {
         let band = Band::around(input, labels, a, b);
         let mut cut = super::max_flow::MinCut::new(band.faces.len());
         for (i, &f) in band.faces.iter().enumerate() {
@@ -74,14 +61,14 @@ pub fn smooth(input: &Input<'_>, capacity: &[f64], labels: &mut [u32], parts: us
                 true if labels[f as usize] == a => [0.0, f64::INFINITY],
                 true => [f64::INFINITY, 0.0],
                 false if pull > 0.0 => {
-                    let weight = pull * input.areas[f as usize];
+                    let weight = pull * input.geometry.areas[f as usize];
                     [a, b].map(|part| weight * f64::from(input.faces.error(&motions[part as usize], f)))
                 }
                 false => [0.0, 0.0],
             };
             let common = on_a.min(on_b);
             cut.prefer(i, on_b - common, on_a - common);
-            for link in input.graph.neighbours(f) {
+            for link in input.geometry.graph.neighbours(f) {
                 if let Some(&j) = band.slot.get(&link.face)
                     && i < j
                 {
@@ -108,7 +95,7 @@ impl Band {
         let of_pair = |f: u32| labels[f as usize] == a || labels[f as usize] == b;
         let mut band = Self { faces: Vec::new(), rim: Vec::new(), slot: BTreeMap::new() };
         let mut queue = VecDeque::new();
-        for edge in input.graph.edges() {
+        for edge in input.geometry.graph.edges() {
             let [f, g] = edge.faces;
             if labels[f as usize] != labels[g as usize] && of_pair(f) && of_pair(g) {
                 for face in [f, g] {
@@ -119,11 +106,11 @@ impl Band {
             }
         }
         while let Some((f, steps, far)) = queue.pop_front() {
-            for link in input.graph.neighbours(f) {
+            for link in input.geometry.graph.neighbours(f) {
                 if !of_pair(link.face) {
                     continue;
                 }
-                let (steps, far) = (steps + 1, far + input.geodesic[link.edge as usize]);
+                let (steps, far) = (steps + 1, far + input.geometry.geodesic[link.edge as usize]);
                 let outside = steps > BAND_FACES && far > BAND;
                 if band.insert(link.face, outside) && !outside {
                     queue.push_back((link.face, steps, far));
