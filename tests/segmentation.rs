@@ -244,14 +244,16 @@ proptest! {
         faces in prop::collection::vec(prop::array::uniform3(0..14u32), 1..60),
         points in prop::collection::vec(prop::array::uniform3(-2..3i8), 14 * 4),
         poses in 0..4usize, method in prop_oneof![Just(Method::Tree), Just(Method::Paper)], exact in any::<bool>(),
-        huge in prop_oneof![Just(1.0), Just(1e-200), Just(1e150)],
+        huge in prop_oneof![Just(1.0), Just(1e-300), Just(1e-200), Just(1e150), Just(1e300)],
+        grown in prop_oneof![Just(1.0), Just(1e-30), Just(1e30), Just(1e-300)],
     ) {
-        let points: Vec<DVec3> = points.iter().map(|p| DVec3::from_array(p.map(|x| f64::from(x) * huge))).collect();
-        let pose = |t: usize| Pose {
-            name: t.to_string(), time: 0.0, positions: points[14 * t..14 * (t + 1)].to_vec(),
+        let at = |t: usize, size: f64| -> Vec<DVec3> {
+            points[14 * t..14 * (t + 1)].iter().map(|p| DVec3::from_array(p.map(|x| f64::from(x) * size))).collect()
         };
+        let moved = if huge > 1e200 { 1.0 } else { huge * grown };
+        let pose = |t: usize| Pose { name: t.to_string(), time: 0.0, positions: at(t, moved) };
         let sequence =
-            Sequence::new("soup", faces, points[..14].to_vec(), (1..=poses).map(pose).collect()).expect("a sequence");
+            Sequence::new("soup", faces, at(0, huge), (1..=poses).map(pose).collect()).expect("a sequence");
         for smoothing in [Smoothing::Deformable, Smoothing::Printed] {
             let parameters = Parameters { method, exact, smoothing, ..Parameters::default() };
             let result = segment(&sequence, &parameters, &mut Silent).expect("a segmentation");

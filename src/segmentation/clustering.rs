@@ -139,25 +139,25 @@ fn split_by_pieces(graph: &DualGraph, labels: &[u32], features: &[Feature], part
     keys.len() > before
 }
 
-/// Pieces of a label that are not its largest join, one at a time and the smallest first, the neighbour across the
-/// cheapest edge, until every label is in one piece on each connected piece of the mesh.
+/// On each connected piece of the mesh, the largest piece of every label stays and its other pieces join the neighbour
+/// across their cheapest edge (as soon as that is one that stays), until every label is in one piece there.
 pub fn absorb_fragments(graph: &DualGraph, weights: &[f64], labels: &mut [u32]) {
+    let (component, _) = graph.pieces();
     loop {
         let (piece, count) = graph.pieces_where(|a, b| labels[a as usize] == labels[b as usize]);
         let mut size = vec![0usize; count];
         let mut label = vec![NONE; count];
+        let mut place = vec![0; count];
         for (f, &p) in piece.iter().enumerate() {
             size[p as usize] += 1;
             label[p as usize] = labels[f];
+            place[p as usize] = component[f];
         }
-        // The largest piece of every label stays.
-        let mut by_label: Vec<(u32, std::cmp::Reverse<usize>, u32)> =
-            (0..count).map(|p| (label[p], std::cmp::Reverse(size[p]), p as u32)).collect();
-        by_label.sort_unstable();
-        let fragment: Vec<u32> = by_label.windows(2).filter(|w| w[0].0 == w[1].0).map(|w| w[1].2).collect();
+        let mut order: Vec<usize> = (0..count).collect();
+        order.sort_by_key(|&p| (label[p], place[p], std::cmp::Reverse(size[p])));
         let mut is_fragment = vec![false; count];
-        for &p in &fragment {
-            is_fragment[p as usize] = true;
+        for pair in order.windows(2) {
+            is_fragment[pair[1]] = label[pair[0]] == label[pair[1]] && place[pair[0]] == place[pair[1]];
         }
         let mut target: Vec<Option<(f64, u32)>> = vec![None; count];
         for (edge, &w) in graph.edges().iter().zip(weights) {
@@ -191,4 +191,26 @@ pub fn compact(labels: &mut [u32]) -> usize {
         *label = *new.entry(*label).or_insert(next);
     }
     new.len()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::mesh::DualEdge;
+
+    #[test]
+    fn a_label_may_have_one_piece_on_every_piece_of_the_mesh() {
+        // A chain of six faces and a chain of four: a body and a garment.
+        let links = [0, 1, 2, 3, 4, 6, 7, 8];
+        let edges = links.map(|i| DualEdge { faces: [i, i + 1], vertices: [0, 1] }).to_vec();
+        let graph = DualGraph::from_edges(10, edges);
+        let weights = [1.0; 8];
+        let worn = [0, 0, 0, 0, 1, 1, 0, 0, 1, 1];
+        let mut labels = worn;
+        absorb_fragments(&graph, &weights, &mut labels);
+        assert_eq!(labels, worn);
+        let mut labels = [0, 0, 0, 1, 0, 0, 0, 1, 0, 0];
+        absorb_fragments(&graph, &weights, &mut labels);
+        assert_eq!(labels, [0, 0, 0, 1, 1, 1, 1, 1, 0, 0]);
+    }
 }

@@ -6,6 +6,9 @@ use crate::mesh::face;
 use crate::sequence::Sequence;
 use glam::{DVec3, Vec3};
 
+/// Coordinates (at unit diagonal) beyond this count as this, so that their squares stay in the range of 32-bit numbers.
+const FAR: f64 = 1e15;
+
 /// Face centroids at unit diagonal, about the middle of the mesh, and the weight of each face.
 pub struct FaceMotion {
     poses: usize,
@@ -23,7 +26,8 @@ impl FaceMotion {
     pub fn new(sequence: &Sequence, scale: f64, weight: Vec<f64>) -> Self {
         let (faces, poses) = (sequence.faces(), sequence.poses().len());
         let centroids = |positions: &[DVec3]| -> Vec<Vec3> {
-            let scaled = |f: &[u32; 3]| face::centroid(face::corners(positions, *f).map(|p| p * scale));
+            let near = |p: DVec3| (p * scale).clamp(DVec3::splat(-FAR), DVec3::splat(FAR));
+            let scaled = |f: &[u32; 3]| face::centroid(face::corners(positions, *f).map(near));
             let all: Vec<DVec3> = faces.iter().map(scaled).collect();
             let middle = all.iter().copied().sum::<DVec3>() / all.len().max(1) as f64;
             all.iter().map(|&c| (c - middle).as_vec3()).collect()

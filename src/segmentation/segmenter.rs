@@ -163,8 +163,9 @@ impl Segmenter {
 
     /// The number of parts that the costs of the merge tree suggest.
     fn best_number_of_parts(&self) -> usize {
-        let samples = self.faces.face_count() * self.faces.pose_count();
-        choice::number_of_parts(&self.steps.merges, self.finest.residual, samples)
+        let (_, pieces) = self.geometry.graph.pieces();
+        let sizes = [self.faces.face_count(), self.faces.pose_count(), pieces];
+        choice::number_of_parts(&self.steps.merges, self.finest.residual, sizes)
     }
 
     /// Smooths the boundaries; by default with a hold that is tightened until smoothing costs little rigidity.
