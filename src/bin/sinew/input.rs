@@ -4,6 +4,7 @@ use crate::Refusal;
 use clap::{Args, ValueEnum};
 use sinew::import::{File, Imported, Options, Reference, Sampling, natural_order, open_in_order};
 use sinew::warning::Warning;
+use std::io::Write;
 use std::path::{Path, PathBuf};
 
 /// Files, and how to read them.
@@ -67,7 +68,10 @@ impl Input {
 
 /// Prints warnings to standard error.
 pub fn print_warnings(warnings: &[Warning]) {
-    warnings.iter().for_each(|warning| eprintln!("note: {}", warning.message));
+    for warning in warnings {
+        // Nobody may be reading, which is no error.
+        let _ = writeln!(std::io::stderr(), "note: {}", warning.message);
+    }
 }
 
 fn read(path: &Path) -> Result<File, Refusal> {

@@ -2,6 +2,7 @@
 
 use crate::Refusal;
 use crate::input::{Input, print_warnings};
+use crate::output::say;
 use clap::Args;
 use serde_json::{Value, json};
 use sinew::import::Imported;
@@ -22,7 +23,7 @@ impl Inspect {
     pub fn run(&self) -> Result<(), Refusal> {
         let imported = self.input.open()?;
         if self.json {
-            println!("{:#}", report(&imported));
+            say(format_args!("{:#}", report(&imported)));
         } else {
             print(&imported);
         }
@@ -57,15 +58,15 @@ fn print(imported: &Imported) {
     let sequence = &imported.sequence;
     let sizes = sequence.sizes();
     let census = census(sequence.faces(), sizes.vertices);
-    println!("{}", sequence.name());
-    println!("  vertices    {}", sizes.vertices);
-    println!("  faces       {}", sizes.faces);
-    println!("  components  {}", pieces(sequence.faces(), sizes.vertices).count);
-    println!("  poses       {}", sizes.poses);
-    println!("  diagonal    {:.4}", sequence.diagonal());
+    say(sequence.name());
+    say(format_args!("  vertices    {}", sizes.vertices));
+    say(format_args!("  faces       {}", sizes.faces));
+    say(format_args!("  components  {}", pieces(sequence.faces(), sizes.vertices).count));
+    say(format_args!("  poses       {}", sizes.poses));
+    say(format_args!("  diagonal    {:.4}", sequence.diagonal()));
     for (number, clip) in imported.clips.iter().enumerate() {
         let taken = if imported.clip == Some(number) { "  (taken)" } else { "" };
-        println!("  clip {number}      {} {:.2} s{taken}", clip.name, clip.seconds);
+        say(format_args!("  clip {number}      {} {:.2} s{taken}", clip.name, clip.seconds));
     }
     for (what, count) in [
         ("edges with one face", census.boundary_edges),
@@ -74,7 +75,7 @@ fn print(imported: &Imported) {
         ("vertices without a face", census.unused_vertices),
     ] {
         if count > 0 {
-            println!("  {count} {what}");
+            say(format_args!("  {count} {what}"));
         }
     }
     print_warnings(&imported.warnings);

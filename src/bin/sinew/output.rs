@@ -4,11 +4,23 @@ use crate::Refusal;
 use serde_json::Value;
 use sinew::export::glb;
 use sinew::sequence::Sequence;
+use std::fmt::Display;
+use std::io::Write;
 use std::path::Path;
+
+/// Prints a line for a person or a pipe. That nobody reads on (`sinew … | head`) is no error.
+pub fn say(line: impl Display) {
+    let _ = writeln!(std::io::stdout(), "{line}");
+}
 
 /// Writes bytes, or says why not.
 pub fn write(path: &Path, bytes: impl AsRef<[u8]>) -> Result<(), Refusal> {
     std::fs::write(path, bytes).map_err(|error| Refusal(format!("{} cannot be written: {error}", path.display())))
+}
+
+/// `1 part`, `2 parts`.
+pub fn counted(count: usize, one: &str) -> String {
+    format!("{count} {one}{}", if count == 1 { "" } else { "s" })
 }
 
 /// Writes a report as JSON.

@@ -2,7 +2,7 @@
 
 use crate::Refusal;
 use crate::input::{Input, print_warnings};
-use crate::output;
+use crate::output::{self, counted, say};
 use clap::{Args, ValueEnum};
 use serde_json::{Map, Value, json};
 use sinew::clock;
@@ -142,20 +142,20 @@ fn report(imported: &Imported, parameters: &Parameters, result: &Segmentation, r
 fn print(imported: &Imported, result: &Segmentation) {
     let sizes = imported.sequence.sizes();
     let seconds: f64 = result.seconds.iter().map(|(_, time)| time).sum();
-    println!(
-        "{}: {} parts of {} faces over {} poses, rigid residual {:.4} of the diagonal, {seconds:.2} s",
+    say(format_args!(
+        "{}: {} of {} over {}, rigid residual {:.4} of the diagonal, {seconds:.2} s",
         imported.sequence.name(),
-        result.parts.len(),
-        sizes.faces,
-        sizes.poses,
+        counted(result.parts.len(), "part"),
+        counted(sizes.faces, "face"),
+        counted(sizes.poses, "pose"),
         result.rigid_residual
-    );
+    ));
     for (number, part) in result.parts.iter().enumerate() {
         let area = 100.0 * part.area;
-        println!(
+        say(format_args!(
             "  part {number:<4} {:>8} faces  {area:>5.1} % of the area  residual {:.4}",
             part.faces, part.residual
-        );
+        ));
     }
     print_warnings(&imported.warnings);
     print_warnings(&result.warnings);

@@ -1,6 +1,7 @@
 //! `sinew zoo`: creatures made by code.
 
-use crate::{Refusal, output};
+use crate::Refusal;
+use crate::output::{self, counted, say};
 use clap::Args;
 use sinew::export::labels;
 use sinew::zoo::{NAMES, Recipe, make};
@@ -36,7 +37,7 @@ impl Zoo {
     /// Lists the creatures, or makes one and writes what was asked for.
     pub fn run(&self) -> Result<(), Refusal> {
         let Some(name) = self.name.as_ref().filter(|_| !self.list) else {
-            NAMES.iter().for_each(|name| println!("{name}"));
+            NAMES.iter().for_each(|name| say(name));
             return Ok(());
         };
         let default = Recipe::default();
@@ -55,14 +56,14 @@ impl Zoo {
             output::write_glb(path, &creature.sequence, &creature.labels, &creature.parts)?;
         }
         let sizes = creature.sequence.sizes();
-        println!(
-            "{name}: {} vertices, {} faces, {} poses, {} parts ({})",
+        say(format_args!(
+            "{name}: {} vertices, {}, {}, {} ({})",
             sizes.vertices,
-            sizes.faces,
-            sizes.poses,
-            creature.parts.len(),
+            counted(sizes.faces, "face"),
+            counted(sizes.poses, "pose"),
+            counted(creature.parts.len(), "part"),
             creature.parts.join(", ")
-        );
+        ));
         Ok(())
     }
 }
