@@ -38,15 +38,18 @@ pub struct Landmarks {
 }
 
 impl Landmarks {
-    /// Chooses `count` landmarks (at least one on every connected piece), each farthest from those before.
-    pub fn new(graph: &DualGraph, weights: &[f64], count: usize) -> Self {
-        let faces = graph.face_count();
-        let (_, pieces) = graph.pieces();
-        let mut paths = ShortestPaths::new(faces);
+    /// Chooses `count` landmarks among the `asked` of #F faces, each farthest from those before; if `count` is less than
+    /// the number of connected pieces with such faces, one on each.
+    pub fn new(graph: &DualGraph, weights: &[f64], asked: &[bool], count: usize) -> Self {
+        let mut paths = ShortestPaths::new(graph.face_count());
         let mut distances = Vec::new();
-        for landmark in 0..count.max(pieces).min(faces) as u32 {
-            let farthest =
-                (0..faces).fold(0, |best, f| if paths.distance[f] > paths.distance[best] { f } else { best });
+        let asked: Vec<usize> = (0..asked.len()).filter(|&f| asked[f]).collect();
+        for landmark in 0..asked.len() as u32 {
+            let farther = |best: usize, f: usize| if paths.distance[f] > paths.distance[best] { f } else { best };
+            let Some(farthest) = asked.iter().copied().reduce(farther) else { break };
+            if landmark as usize >= count && paths.distance[farthest].is_finite() {
+                break;
+            }
             let own = ShortestPaths::from_face(graph, weights, farthest as u32);
             distances.push(own.distance.iter().map(|&d| d as f32).collect());
             paths.lower(graph, weights, [(farthest as u32, landmark)]);

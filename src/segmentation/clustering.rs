@@ -31,28 +31,45 @@ pub fn nearest_features(graph: &DualGraph, weights: &[f64], features: &[Feature]
     Clustering { rounds: vec![labels], partitions }
 }
 
-/// Eq. 7 with the given way to average distances.
+/// #F: whether the connected piece of a face has more than one feature. Where it has only one, there is nothing to
+/// cluster, and a mesh of thousands of pieces does not need memory for faces × pieces.
+pub fn contested(graph: &DualGraph, features: &[Feature]) -> Vec<bool> {
+    let (piece, count) = graph.pieces();
+    let mut features_on = vec![0; count];
+    for feature in features {
+        features_on[piece[feature.face as usize] as usize] += 1;
+    }
+    piece.iter().map(|&p| features_on[p as usize] > 1).collect()
+}
+
+/// Eq. 7 with the given way to average distances, on the faces that are [`contested`]; every other piece of the mesh is
+/// a partition.
 ///
 /// `keep_going` hears how far along it is (0 to 1) and may stop it.
 pub fn cluster(
     graph: &DualGraph,
     weights: &[f64],
     features: &[Feature],
+    contested: &[bool],
     averages: &mut dyn Averages,
     keep_going: &mut dyn FnMut(f64) -> bool,
 ) -> Result<Clustering, SegmentationError> {
-    let mut partition_of: Vec<u32> = features.iter().map(|f| f.partition).collect();
+    let taking_part = || features.iter().filter(|feature| contested[feature.face as usize]);
+    let feature_faces: Vec<u32> = taking_part().map(|feature| feature.face).collect();
+    let mut partition_of: Vec<u32> = taking_part().map(|feature| feature.partition).collect();
+    compact(&mut partition_of);
     let mut rounds = Vec::new();
     for repeat in 0..MOST_REPEATS {
-        let partitions = partition_of.iter().max().map_or(0, |&m| m as usize + 1);
         let share = |x: f64| (repeat as f64 + x) / MOST_REPEATS as f64;
-        let near = feature_distances(graph, weights, features, &partition_of, partitions);
-        iterate(&near, partitions, features, &partition_of, averages, &mut rounds, &mut |x| keep_going(share(x)))?;
+        let near = feature_distances(graph, weights, &feature_faces, &partition_of);
+        let mut keep_going = |x| keep_going(share(x));
+        iterate(&near, &feature_faces, &partition_of, contested, averages, &mut rounds, &mut keep_going)?;
         let labels = rounds.last().map_or(&[][..], Vec::as_slice);
-        if !split_by_pieces(graph, labels, features, &mut partition_of) {
+        if !split_by_pieces(graph, labels, &feature_faces, &mut partition_of) {
             break;
         }
     }
+    label_other_pieces(graph, &mut rounds);
     let mut labels = rounds.last().cloned().unwrap_or_default();
     absorb_fragments(graph, weights, &mut labels);
     let partitions = compact(&mut labels);
@@ -62,44 +79,53 @@ pub fn cluster(
     Ok(Clustering { rounds, partitions })
 }
 
-/// For every partition, #F distances to the nearest of its features.
-fn feature_distances(
-    graph: &DualGraph,
-    weights: &[f64],
-    features: &[Feature],
-    partition_of: &[u32],
-    partitions: usize,
-) -> Vec<Vec<f32>> {
-    let of_partition = |i: usize| {
-        let own = features.iter().zip(partition_of).filter(move |&(_, &p)| p as usize == i);
-        let paths = ShortestPaths::from_sources(graph, weights, own.map(|(f, _)| (f.face, 0)));
-        paths.distance.iter().map(|&d| d as f32).collect()
-    };
-    (0..partitions).map(of_partition).collect()
+/// Every piece that no partition was in reach of is a partition of its own.
+fn label_other_pieces(graph: &DualGraph, rounds: &mut [Vec<u32>]) {
+    let (piece, _) = graph.pieces();
+    let first = rounds.iter().flatten().filter(|&&label| label != NONE).max().map_or(0, |&last| last + 1);
+    for (f, label) in rounds.iter_mut().flat_map(|round| round.iter_mut().enumerate()) {
+        if *label == NONE {
+            *label = first + piece[f];
+        }
+    }
 }
 
-/// Assigns all faces until none moves or a state comes back.
+fn count(partition_of: &[u32]) -> usize {
+    partition_of.iter().max().map_or(0, |&last| last as usize + 1)
+}
+
+/// For every partition, #F distances to the nearest of its features.
+fn feature_distances(graph: &DualGraph, weights: &[f64], feature_faces: &[u32], partition_of: &[u32]) -> Vec<Vec<f32>> {
+    let of_partition = |i: usize| {
+        let own = feature_faces.iter().zip(partition_of).filter(move |&(_, &p)| p as usize == i);
+        let paths = ShortestPaths::from_sources(graph, weights, own.map(|(&face, _)| (face, 0)));
+        paths.distance.iter().map(|&d| d as f32).collect()
+    };
+    (0..count(partition_of)).map(of_partition).collect()
+}
+
+/// Assigns all contested faces until none moves or a state comes back; `near` are the [`feature_distances`].
 fn iterate(
     near: &[Vec<f32>],
-    partitions: usize,
-    features: &[Feature],
+    feature_faces: &[u32],
     partition_of: &[u32],
+    contested: &[bool],
     averages: &mut dyn Averages,
     rounds: &mut Vec<Vec<u32>>,
     keep_going: &mut dyn FnMut(f64) -> bool,
 ) -> Result<(), SegmentationError> {
-    let faces = near.first().map_or(0, Vec::len);
+    let (faces, partitions) = (contested.len(), near.len());
     // F_i = P_i at the start; the other faces belong to no partition yet.
     let mut labels = vec![NONE; faces];
-    for (feature, &partition) in features.iter().zip(partition_of) {
-        labels[feature.face as usize] = partition;
+    for (&face, &partition) in feature_faces.iter().zip(partition_of) {
+        labels[face as usize] = partition;
     }
     let first = rounds.len();
     for round in 0..MOST_ROUNDS {
         let mut sub = |x: f64| keep_going((round as f64 + x) / MOST_ROUNDS as f64);
         averages.update(&labels, partitions, &mut sub)?;
         let mut row = vec![0.0; partitions];
-        let nearest = |f: usize| -> u32 {
+        let mut nearest = |f: usize| -> u32 {
             averages.of(f as u32, &mut row);
             let mut best = (f32::INFINITY, NONE);
             for i in 0..partitions {
@@ -110,7 +136,7 @@ fn iterate(
             }
             best.1
         };
-        let next: Vec<u32> = (0..faces).map(nearest).collect();
+        let next: Vec<u32> = contested.iter().enumerate().map(|(f, &c)| if c { nearest(f) } else { NONE }).collect();
         let settled = rounds[first..].contains(&next);
         labels.clone_from(&next);
         if settled {
@@ -122,17 +148,14 @@ fn iterate(
 }
 
 /// Gives the features of every piece of a partition that fell apart a partition of their own. False if none did.
-fn split_by_pieces(graph: &DualGraph, labels: &[u32], features: &[Feature], partition_of: &mut [u32]) -> bool {
+fn split_by_pieces(graph: &DualGraph, labels: &[u32], feature_faces: &[u32], partition_of: &mut [u32]) -> bool {
     let (piece, _) = graph.pieces_where(|a, b| labels[a as usize] == labels[b as usize]);
-    let mut keys: Vec<(u32, u32)> = features
-        .iter()
-        .zip(partition_of.iter())
-        .map(|(feature, &partition)| (partition, piece[feature.face as usize]))
-        .collect();
+    let mut keys: Vec<(u32, u32)> =
+        partition_of.iter().zip(feature_faces).map(|(&partition, &face)| (partition, piece[face as usize])).collect();
     let key_of_feature = keys.clone();
     keys.sort_unstable();
     keys.dedup();
-    let before = partition_of.iter().max().map_or(0, |&m| m as usize + 1);
+    let before = count(partition_of);
     for (partition, key) in partition_of.iter_mut().zip(key_of_feature) {
         *partition = keys.partition_point(|k| *k < key) as u32;
     }

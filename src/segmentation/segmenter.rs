@@ -262,11 +262,12 @@ fn clusters(
     features: &[Feature],
     keep_going: &mut dyn FnMut(f64) -> bool,
 ) -> Result<Clustering, SegmentationError> {
+    let contested = clustering::contested(graph, features);
     if parameters.exact {
-        clustering::cluster(graph, weights, features, &mut Exact::new(graph, weights), keep_going)
+        clustering::cluster(graph, weights, features, &contested, &mut Exact::new(graph, weights), keep_going)
     } else if parameters.method == Method::Paper {
-        let mut averages = Landmarks::new(graph, weights, LANDMARKS);
-        clustering::cluster(graph, weights, features, &mut averages, keep_going)
+        let mut averages = Landmarks::new(graph, weights, &contested, LANDMARKS);
+        clustering::cluster(graph, weights, features, &contested, &mut averages, keep_going)
     } else {
         Ok(clustering::nearest_features(graph, weights, features))
     }

@@ -37,7 +37,7 @@ impl Zoo {
     /// Lists the creatures, or makes one and writes what was asked for.
     pub fn run(&self) -> Result<(), Refusal> {
         let Some(name) = self.name.as_ref().filter(|_| !self.list) else {
-            NAMES.iter().for_each(|name| say(name));
+            NAMES.iter().for_each(say);
             return Ok(());
         };
         let default = Recipe::default();
