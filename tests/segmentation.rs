@@ -226,6 +226,22 @@ fn no_faces_is_an_error_in_words() {
     assert_eq!(segment(&empty, &Parameters::default(), &mut Silent).err(), Some(SegmentationError::NoFaces));
 }
 
+#[test]
+fn thousands_of_pieces_are_clustered_by_the_letter() {
+    // Loose triangles, every other one turning: a table of faces × partitions would have 36 million entries.
+    let corner = |t: f64, i: u32| {
+        let turn = DMat3::from_rotation_z(t * f64::from(i / 3 % 2));
+        DVec3::splat(f64::from(i / 3)) + turn * [DVec3::X, DVec3::Y, DVec3::Z][i as usize % 3]
+    };
+    let at = |t: f64| (0..18_000).map(|i| corner(t, i)).collect::<Vec<_>>();
+    let faces = (0..6_000).map(|f| [3 * f, 3 * f + 1, 3 * f + 2]).collect();
+    let pose = Pose { name: String::new(), time: 0.0, positions: at(0.5) };
+    let sequence = Sequence::new("loose", faces, at(0.0), vec![pose]).expect("a sequence");
+    let result = segment(&sequence, &Parameters::paper(), &mut Silent).expect("a segmentation");
+    assert_eq!(result.parts.len(), 6_000);
+    assert_sane(&sequence, &result);
+}
+
 fn assert_sane(sequence: &Sequence, result: &Segmentation) {
     assert_eq!(result.labels.len(), sequence.faces().len());
     assert!(result.labels.iter().all(|&l| (l as usize) < result.parts.len()));
