@@ -53,7 +53,7 @@ pub struct Steps {
     pub features: Vec<Feature>,
     /// #F partition numbers after each round of clustering (§3.3).
     pub rounds: Vec<Vec<u32>>,
-    /// Merges from the finest parts to one part per connected piece, cheapest first ([`Method::Tree`] only).
+    /// Merges from the finest parts to one part per connected piece, cheapest first ([`Method::Tree`](super::Method::Tree) only).
     pub merges: Vec<Merge>,
     /// #F part numbers before boundaries were smoothed.
     pub unsmoothed: Vec<u32>,
