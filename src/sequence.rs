@@ -158,13 +158,36 @@ impl Sequence {
             low = low.min(self.reference[v as usize]);
             high = high.max(self.reference[v as usize]);
         }
-        if low.x > high.x { 0.0 } else { low.distance(high) }
+        if low.x > high.x { 0.0 } else { length(high - low) }
     }
+}
+
+/// Length of a vector that is not negative, also where its square is out of the range of numbers; finite in any case.
+fn length(v: DVec3) -> f64 {
+    let largest = v.max_element().min(f64::MAX);
+    if largest > 0.0 { (largest * (v.min(DVec3::MAX) / largest).length()).min(f64::MAX) } else { 0.0 }
 }
 
 fn check_finite(pose: &str, positions: &[DVec3]) -> Result<(), SequenceError> {
     match positions.iter().position(|p| !p.is_finite()) {
         Some(vertex) => Err(SequenceError::NotFinite { pose: pose.to_owned(), vertex }),
         None => Ok(()),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_diagonal_is_right_for_huge_and_tiny_meshes() {
+        for size in [1e-300, 1e-160, 1.0, 1e160, 1e300] {
+            let reference = vec![DVec3::ZERO, DVec3::new(3.0 * size, 0.0, 0.0), DVec3::new(0.0, 4.0 * size, 0.0)];
+            let sequence = Sequence::new("", vec![[0, 1, 2]], reference, Vec::new()).expect("a mesh");
+            assert!((sequence.diagonal() / size - 5.0).abs() < 1e-12, "{size}");
+        }
+        let apart = vec![DVec3::splat(-f64::MAX), DVec3::splat(f64::MAX), DVec3::ZERO];
+        let sequence = Sequence::new("", vec![[0, 1, 2]], apart, Vec::new()).expect("a mesh");
+        assert!(sequence.diagonal().is_finite());
     }
 }

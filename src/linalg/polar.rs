@@ -5,7 +5,7 @@
 
 use glam::DMat3;
 
-/// The rotation nearest to `m` (det +1), and whether it is well determined.
+/// The rotation nearest to `m` (det +1); where several are nearest, one of them. The identity for what is not finite.
 ///
 /// Higham's Newton iteration for well-conditioned matrices of positive determinant; every other input (mirrored,
 /// flat, zero) goes through a symmetric eigenproblem ([`super::rigid_fit::best_rotation`]), which always answers.

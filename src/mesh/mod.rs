@@ -2,6 +2,7 @@
 
 pub mod dual;
 pub mod face;
+mod groups;
 pub mod near;
 pub mod pieces;
 pub mod weld;

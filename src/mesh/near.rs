@@ -1,6 +1,7 @@
 //! Which connected pieces of a mesh lie nearest to each other.
 
 use super::DualGraph;
+use super::groups::Groups;
 use glam::DVec3;
 
 /// Faces of one piece that are asked for their nearest face on another piece; more are thinned out evenly.
@@ -36,7 +37,8 @@ pub fn bridges(graph: &DualGraph, centroids: &[DVec3]) -> Vec<[u32; 2]> {
         }
         let before = bridges.len();
         for (_, pair) in best.into_iter().flatten() {
-            if group.join(pair.map(|f| piece[f as usize])) {
+            let [a, b] = pair.map(|f| piece[f as usize]);
+            if group.join(a, b) {
                 bridges.push(pair);
             }
         }
@@ -45,33 +47,6 @@ pub fn bridges(graph: &DualGraph, centroids: &[DVec3]) -> Vec<[u32; 2]> {
         }
     }
     bridges
-}
-
-/// Disjoint sets of pieces.
-struct Groups {
-    parent: Vec<u32>,
-}
-
-impl Groups {
-    fn new(count: usize) -> Self {
-        Self { parent: (0..count as u32).collect() }
-    }
-
-    fn root(&mut self, mut p: u32) -> u32 {
-        while self.parent[p as usize] != p {
-            let up = self.parent[self.parent[p as usize] as usize];
-            self.parent[p as usize] = up;
-            p = up;
-        }
-        p
-    }
-
-    /// False if the two are together already.
-    fn join(&mut self, pair: [u32; 2]) -> bool {
-        let [a, b] = pair.map(|p| self.root(p));
-        self.parent[a.max(b) as usize] = a.min(b);
-        a != b
-    }
 }
 
 /// A balanced k-d tree over points, laid out in place.

@@ -1,8 +1,10 @@
 //! Connected pieces of a mesh, and a census of its defects.
 
+use super::groups::Groups;
 use serde::Serialize;
 
-/// The connected pieces of a mesh: faces that share a vertex are in one piece.
+/// The connected pieces of a mesh: faces that share a vertex are in one piece. (Those of [`super::DualGraph::pieces`]
+/// share edges: two cones that touch at their tips are one piece here, two there.)
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Pieces {
     /// How many pieces there are.
@@ -15,16 +17,16 @@ pub struct Pieces {
 ///
 /// `faces` is #F triples of vertex numbers below `vertices`.
 pub fn pieces(faces: &[[u32; 3]], vertices: usize) -> Pieces {
-    let mut parent: Vec<u32> = (0..vertices as u32).collect();
+    let mut groups = Groups::new(vertices);
     for &[a, b, c] in faces {
-        join(&mut parent, a, b);
-        join(&mut parent, a, c);
+        groups.join(a, b);
+        groups.join(a, c);
     }
     let mut number = vec![u32::MAX; vertices];
     let mut count = 0;
     let mut face = Vec::with_capacity(faces.len());
     for corners in faces {
-        let root = root(&mut parent, corners[0]) as usize;
+        let root = groups.root(corners[0]) as usize;
         if number[root] == u32::MAX {
             number[root] = count;
             count += 1;
@@ -32,20 +34,6 @@ pub fn pieces(faces: &[[u32; 3]], vertices: usize) -> Pieces {
         face.push(number[root]);
     }
     Pieces { count: count as usize, face }
-}
-
-fn root(parent: &mut [u32], mut v: u32) -> u32 {
-    while parent[v as usize] != v {
-        let above = parent[parent[v as usize] as usize];
-        parent[v as usize] = above;
-        v = above;
-    }
-    v
-}
-
-fn join(parent: &mut [u32], a: u32, b: u32) {
-    let (a, b) = (root(parent, a), root(parent, b));
-    parent[a.max(b) as usize] = a.min(b);
 }
 
 /// How far a mesh is from a closed manifold.
