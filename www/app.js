@@ -134,6 +134,7 @@ export class App extends EventTarget {
     this.feature = Math.min(this.feature, Math.max(0, result.features.length - 1));
     this.round = Math.max(0, result.rounds.length - 1);
     this.#paintParts();
+    if (this.#view() === PARTS) this.stage.flowFrom(Uint32Array.from(result.features, ({ face }) => face));
     this.changed('result', 'link');
   }
 

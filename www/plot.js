@@ -10,39 +10,63 @@ const BINS = 44;
 const MOST_DECADES = 5;
 
 /**
- * Histogram of a field over the logarithm of its values, the share inside a set in the accent colour, with one
- * value marked.
+ * Histogram of a field over the logarithm of its values. A threshold stands on it; what exceeds it is in the accent
+ * colour, and it can be dragged.
  * @param {Float32Array} field
- * @param {Uint8Array} inside
- * @param {{value: number, label: string}|null} mark
+ * @param {{value: number, read: (value: number) => string, choose: (value: number) => void}} threshold
  */
-export function histogram(field, inside, mark, label) {
+export function histogram(field, threshold, label) {
   const logs = Float64Array.from(field, (value) => Math.log10(value));
   const finite = logs.filter(Number.isFinite).sort();
-  if (finite.length < 2 || finite[0] === finite.at(-1)) return h('p', { class: 'small faint' }, 'Nothing deforms: every face moves with its neighbours.');
-  const high = finite[Math.ceil(0.999 * finite.length) - 1];
-  const low = Math.min(Math.max(finite[Math.floor(0.002 * finite.length)], high - MOST_DECADES), high - 1e-6);
-  const bins = Array.from({ length: BINS }, () => [0, 0]);
-  logs.forEach((log, face) => {
-    const bin = Math.min(BINS - 1, Math.max(0, Math.floor(((log - low) / (high - low)) * BINS)));
-    bins[Number.isNaN(bin) ? 0 : bin][inside[face] ? 1 : 0]++;
-  });
-  // What is smaller than the scale piles up in the first bin, which may be cut off at the top.
-  const most = Math.max(1, ...bins.slice(1).map(([a, b]) => a + b));
+  if (finite.length < 2 || finite[0] === finite.at(-1)) return null;
+  const top = finite[Math.ceil(0.999 * finite.length) - 1];
+  const low = Math.min(Math.max(finite[Math.floor(0.002 * finite.length)], top - MOST_DECADES), top - 1e-6);
+  const high = Math.max(top, Math.min(Math.log10(threshold.value), top + 1));
+  const bins = new Array(BINS).fill(0);
+  // What is smaller than the scale is in the first bin.
+  for (const log of logs) bins[Math.min(BINS - 1, Math.max(0, Math.floor(((log - low) / (high - low)) * BINS)))]++;
+  const most = Math.max(1, ...bins.slice(1));
   const floor = HEIGHT - FOOT;
-  const scale = (floor - 12) / most;
   const width = WIDTH / BINS;
-  const bar = (i, from, size, kind) => size > 0 &&
-    from * scale < floor && svg('rect', { x: (i * width + 0.5).toFixed(2), width: (width - 1).toFixed(2), y: Math.max(0, floor - (from + size) * scale).toFixed(2), height: Math.min(size * scale, floor - from * scale).toFixed(2), class: kind });
-  const x = (value) => Math.min(WIDTH, Math.max(0, ((Math.log10(value) - low) / (high - low)) * WIDTH));
-  return frame(label,
-    ...bins.flatMap(([outside, within], i) => [bar(i, 0, outside, 'bar'), bar(i, outside, within, 'bar accent')]),
-    base(),
-    ...decades(low, high).map((power) => tick(x(10 ** power), number(10 ** power, 1))),
-    mark && [
-      svg('line', { x1: x(mark.value), x2: x(mark.value), y1: 0, y2: floor, class: 'mark' }),
-      svg('text', { x: x(mark.value) + (x(mark.value) > WIDTH - 64 ? -4 : 4), y: 9, class: 'mark-text', 'text-anchor': x(mark.value) > WIDTH - 64 ? 'end' : 'start' }, mark.label),
-    ]);
+  const bars = (kind) => bins.map((size, i) => {
+    const height = Math.min(1, size / most) * (floor - 14);
+    return size > 0 && svg('rect', { x: (i * width + 0.5).toFixed(2), width: (width - 1).toFixed(2), y: (floor - height).toFixed(2), height: height.toFixed(2), class: kind });
+  });
+  const place = (value) => Math.min(WIDTH, Math.max(0, ((Math.log10(value) - low) / (high - low)) * WIDTH));
+  const value = (x) => 10 ** (low + (Math.min(WIDTH, Math.max(0, x)) / WIDTH) * (high - low));
+  const above = svg('svg', { y: 0, height: HEIGHT, viewBox: '0 0 1 1' }, svg('g', {}, ...bars('bar accent')));
+  const line = svg('line', { y1: 0, y2: floor, class: 'mark' });
+  const grip = svg('circle', { cy: floor, r: 5, class: 'dot accent' });
+  const words = svg('text', { y: 9, class: 'mark-text' });
+  const set = (number) => {
+    const x = place(number);
+    const left = x > WIDTH - 64;
+    // The accent bars lie over the others and are cut off at the threshold.
+    above.setAttribute('x', x);
+    above.setAttribute('width', Math.max(0.001, WIDTH - x));
+    above.setAttribute('viewBox', `${x} 0 ${Math.max(0.001, WIDTH - x)} ${HEIGHT}`);
+    for (const name of ['x1', 'x2']) line.setAttribute(name, x);
+    grip.setAttribute('cx', Math.min(WIDTH - 5, Math.max(5, x)));
+    words.setAttribute('x', x + (left ? -4 : 4));
+    words.setAttribute('text-anchor', left ? 'end' : 'start');
+    words.textContent = threshold.read(number);
+  };
+  set(threshold.value);
+  const plot = frame(label, ...bars('bar'), above, base(),
+    ...decades(low, high).map((power) => tick(place(10 ** power), number(10 ** power, 1))), line, words, grip);
+  plot.classList.add('draggable');
+  const at = (event) => {
+    const box = plot.getBoundingClientRect();
+    return value(((event.clientX - box.left) / box.width) * WIDTH);
+  };
+  plot.addEventListener('pointerdown', (event) => {
+    plot.setPointerCapture(event.pointerId);
+    set(at(event));
+  });
+  plot.addEventListener('pointermove', (event) => plot.hasPointerCapture(event.pointerId) && set(at(event)));
+  plot.addEventListener('pointerup', (event) => threshold.choose(at(event)));
+  plot.addEventListener('pointercancel', () => set(threshold.value));
+  return plot;
 }
 
 function decades(low, high) {

@@ -6,6 +6,7 @@
  * and everything but the picture still works.
  */
 import { h } from './dom.js';
+import { Pace } from './pace.js';
 import init, { Viewport } from '../pkg/page.js';
 
 /** How long to wait before the next attempt after a device was lost, in milliseconds. */
@@ -13,6 +14,11 @@ const REBUILD_AFTER = 400;
 /** How often to look for a lost device while nothing is drawn, in milliseconds. */
 const LOOK_FOR_LOSS_EVERY = 1000;
 const MOST_REBUILDS = 5;
+/** How long new paint takes to flow in, in milliseconds. */
+const FLOWS = 900;
+/** Where frames are slow: how long the picture must be still before it is drawn in full, in milliseconds. */
+const SETTLES = 350;
+const CALM = matchMedia('(prefers-reduced-motion: reduce)');
 
 export class Stage extends EventTarget {
   /**
@@ -28,6 +34,11 @@ export class Stage extends EventTarget {
     this.view = null;
     this.backend = null;
     this.rebuilds = 0;
+    this.pace = new Pace();
+    /** When new paint began to flow in; null: it is there. */
+    this.flowing = null;
+    /** Whether the picture that is shown has all its shadows, even where frames are slow. */
+    this.settled = false;
     this.kept = { mesh: null, time: -1, loop: false, paint: [['paint_clay']], boundaries: true, wireframe: false, marks: new Map(),
       camera: null, dark: false, insets: [0, 0, 0, 0] };
     this.started = this.#start(module);
@@ -79,12 +90,15 @@ export class Stage extends EventTarget {
     this.view.set_boundaries(kept.boundaries);
     this.view.set_wireframe(kept.wireframe);
     apply(this.view, kept.paint);
+    this.flowing = null;
+    this.pace.begun = [];
+    this.#simplify();
     for (const [style, faces] of kept.marks) this.view.mark_faces(faces, style);
   }
 
   #fit() {
     const { width, height } = this.host.getBoundingClientRect();
-    if (width >= 1 && height >= 1) this.view?.resize(width, height, devicePixelRatio);
+    if (width >= 1 && height >= 1) this.view?.resize(width, height, this.pace.coarse ? 1 : devicePixelRatio);
   }
 
   #resize() {
@@ -95,8 +109,41 @@ export class Stage extends EventTarget {
   #frame(now) {
     requestAnimationFrame((later) => this.#frame(later));
     this.dispatchEvent(Object.assign(new Event('tick'), { now }));
+    if (!this.view) return;
+    this.#flow(now);
+    if (!this.pace.allows(now, this.view.under_way())) return;
+    this.#settle(now);
     // Without a change nothing is drawn, and nothing is spent.
-    if (this.view?.render() && this.kept.mesh) this.dispatchEvent(new Event('drawn'));
+    if (!this.view.render()) return;
+    if (this.pace.began(now)) this.#simplify();
+    if (this.kept.mesh) this.dispatchEvent(new Event('drawn'));
+  }
+
+  /** Draws as simply as the pace asks. */
+  #simplify() {
+    this.view.set_plain(this.pace.plain);
+    if (this.pace.coarse) this.#fit();
+  }
+
+  /** Where frames are slow, a picture that has come to rest gets its shadows after all. */
+  #settle(now) {
+    if (!this.pace.plain) return;
+    const still = !this.view.stale();
+    if (still && !this.settled && now - this.pace.last > SETTLES) {
+      this.settled = true;
+      this.view.set_plain(false);
+    } else if (!still && this.settled) {
+      this.settled = false;
+      this.view.set_plain(true);
+    }
+  }
+
+  #flow(now) {
+    if (this.flowing == null) return;
+    const share = Math.min(1, (now - (this.flowing ||= now)) / FLOWS);
+    // Slower towards the end.
+    this.view.set_flow(1 - (1 - share) ** 1.6);
+    if (share >= 1) this.flowing = null;
   }
 
   #watch() {
@@ -137,6 +184,7 @@ export class Stage extends EventTarget {
    * @param {{faces: Uint32Array, reference: Float32Array, poses: Float32Array}} mesh
    */
   open(mesh, loop) {
+    this.flowing = null;
     const changes = { mesh, loop, time: -1, camera: null, marks: new Map(), paint: [['paint_clay']] };
     this.#set(changes, (view) => {
       view.set_loop(loop);
@@ -155,6 +203,13 @@ export class Stage extends EventTarget {
    */
   paint(...paint) {
     this.#set({ paint }, (view) => apply(view, paint));
+  }
+
+  /** Lets what is painted flow in from some faces, unless the visitor wants nothing to move. @param {Uint32Array} faces */
+  flowFrom(faces) {
+    if (!this.view || CALM.matches || !faces.length) return;
+    this.view.flow_from(faces);
+    this.flowing = 0;
   }
 
   /** Marks exactly these faces with a style. */
@@ -228,8 +283,10 @@ export class Stage extends EventTarget {
   /** The picture as it is now, as a PNG. @returns {Promise<Blob>} */
   async picture() {
     if (!this.view) throw new Error('There is no picture to save without a GPU.');
+    this.view.set_plain(false);
     this.view.redraw();
     this.view.render();
+    this.view.set_plain(this.pace.plain);
     const blob = await new Promise((resolve) => this.canvas.toBlob(resolve, 'image/png'));
     if (!blob) throw new Error('The browser could not save the picture.');
     return blob;

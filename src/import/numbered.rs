@@ -63,8 +63,8 @@ pub fn open(files: &[(&File, Format)]) -> Result<Imported, ImportError> {
     let input_faces = reference.len();
     let cut = faces.len() != input_faces || polygons.iter().enumerate().any(|(f, &p)| f != p as usize);
     let wrong = |error: crate::sequence::SequenceError| ImportError(format!("{name}: {error}"));
-    let mut sequence =
-        Sequence::new(title(name, !others.is_empty()), faces, reference.positions, others).map_err(wrong)?;
+    let paths: Vec<&str> = files.iter().map(|(file, _)| file.name.as_str()).collect();
+    let mut sequence = Sequence::new(title(&paths), faces, reference.positions, others).map_err(wrong)?;
     if cut {
         sequence = sequence.with_polygons(polygons).map_err(wrong)?;
     }
@@ -121,12 +121,51 @@ fn note_polygons(mesh: &PolygonMesh, polygons: &[u32], warnings: &mut Vec<Warnin
     }
 }
 
-/// What to call the sequence: its file, or the folder of its files.
-fn title(path: &str, many: bool) -> &str {
-    let mut parts = path.rsplit(['/', '\\']);
-    let file = parts.next().unwrap_or(path);
-    match parts.next() {
-        Some(folder) if many && !folder.is_empty() => folder,
-        _ => file,
+/// What to call the sequence: the folder of its files, what their names begin with alike (the numbers left away), or
+/// the first file.
+fn title(paths: &[&str]) -> String {
+    let first = paths.first().copied().unwrap_or_default();
+    let [folder, file] = split(first);
+    if paths.len() < 2 {
+        return file.to_owned();
+    }
+    let named = split(folder)[1];
+    if named.contains(char::is_alphanumeric) && paths.iter().all(|path| split(path)[0] == folder) {
+        return named.to_owned();
+    }
+    let stem = |path| {
+        let [_, file] = split(path);
+        file.rsplit_once('.').map_or(file, |(stem, _)| stem)
+    };
+    let alike = paths.iter().fold(stem(first), |alike, path| {
+        let pairs = alike.char_indices().zip(stem(path).chars());
+        let same = pairs.take_while(|((_, a), b)| a == b).map(|((at, a), _)| at + a.len_utf8()).last();
+        &alike[..same.unwrap_or(0)]
+    });
+    let alike = alike.trim_end_matches(|c: char| !c.is_alphabetic());
+    if alike.chars().count() > 1 { alike.to_owned() } else { file.to_owned() }
+}
+
+/// The folder of a path, if it has one, and the name in it.
+fn split(path: &str) -> [&str; 2] {
+    path.rsplit_once(['/', '\\']).map_or(["", path], |(folder, name)| [folder, name])
+}
+
+#[cfg(test)]
+mod tests {
+    use super::title;
+
+    #[test]
+    fn a_sequence_is_named_after_what_its_files_share() {
+        assert_eq!(title(&["horse/rest.obj", "horse/frame_1.obj"]), "horse");
+        assert_eq!(title(&["models/horse/rest.obj", "models/horse/frame_1.obj"]), "horse");
+        assert_eq!(title(&["horse-01.ply", "horse-02.ply"]), "horse");
+        assert_eq!(title(&["a/camel_1.obj", "b/camel_2.obj"]), "camel");
+        assert_eq!(title(&["rest.obj", "frame_1.obj"]), "rest.obj");
+        assert_eq!(title(&["../bear1.obj", "../bear2.obj"]), "bear");
+        assert_eq!(title(&["001.obj", "002.obj"]), "001.obj");
+        assert_eq!(title(&["één1.obj", "één2.obj"]), "één");
+        assert_eq!(title(&["a\\lion.off"]), "lion.off");
+        assert_eq!(title(&[]), "");
     }
 }

@@ -3,9 +3,9 @@
 //!
 //! Gene H. Golub, Charles F. Van Loan. Matrix Computations, 4th edition, §8.5.
 
-/// A unit eigenvector of the largest eigenvalue of a symmetric matrix. Where the eigenvalue is repeated, one of its
-/// eigenvectors; for the zero matrix, the first axis.
-pub fn largest_eigenvector<const N: usize>(mut a: [[f64; N]; N]) -> [f64; N] {
+/// The largest eigenvalue of a symmetric matrix and a unit eigenvector of it. Where the eigenvalue is repeated, one of
+/// its eigenvectors; for the zero matrix, the first axis.
+pub fn largest_eigenpair<const N: usize>(mut a: [[f64; N]; N]) -> (f64, [f64; N]) {
     let mut v = [[0.0; N]; N];
     for (i, row) in v.iter_mut().enumerate() {
         row[i] = 1.0;
@@ -23,7 +23,7 @@ pub fn largest_eigenvector<const N: usize>(mut a: [[f64; N]; N]) -> [f64; N] {
         }
     }
     let largest = (1..N).fold(0, |best, i| if a[i][i] > a[best][best] { i } else { best });
-    std::array::from_fn(|i| v[i][largest])
+    (a[largest][largest], std::array::from_fn(|i| v[i][largest]))
 }
 
 /// Makes `a[p][q]` zero by a rotation in the plane of axes p and q, collected in the columns of `v`.
@@ -58,11 +58,11 @@ mod tests {
             let a: [[f64; 4]; 4] = std::array::from_fn(|i| std::array::from_fn(|j| {
                 if rank_one { m[0][i] * m[0][j] } else { m[i][j] + m[j][i] }
             }));
-            let v = largest_eigenvector(a);
+            let (value, v) = largest_eigenpair(a);
             let times: [f64; 4] = std::array::from_fn(|i| (0..4).map(|j| a[i][j] * v[j]).sum());
             let lambda: f64 = (0..4).map(|i| v[i] * times[i]).sum();
             let oracle = nalgebra::Matrix4::from_fn(|i, j| a[i][j]).symmetric_eigenvalues().max();
-            prop_assert!((lambda - oracle).abs() < 1e-9);
+            prop_assert!((lambda - oracle).abs() < 1e-9 && (value - oracle).abs() < 1e-9);
             for i in 0..4 {
                 prop_assert!((times[i] - lambda * v[i]).abs() < 1e-9);
             }

@@ -5,6 +5,7 @@
 //! Theobald. Rapid calculation of RMSDs using a quaternion-based characteristic polynomial. Acta Crystallographica
 //! A61, 2005.
 
+use super::jacobi;
 use super::polar::frobenius_squared;
 use glam::{DMat3, DQuat, DVec3};
 
@@ -102,12 +103,14 @@ impl Moments {
     }
 }
 
-/// Slope of the quartic at its largest root, over the cube of that root, below which the root is nearly double (points on
-/// a line) and Newton's method loses too many digits.
-const NEARLY_DOUBLE: f64 = 1e-4;
+/// Slope of the quartic, over the cube of the value, below which its largest root counts as double.
+const DOUBLE_ROOT: f64 = 1e-4;
 
 /// The largest eigenvalue of Horn's 4×4 matrix, i.e. the largest tr(Rᵀh) over rotations R, by Newton's method from
 /// the upper bound `start`, where the quartic is convex, so that it falls monotonically onto the root.
+///
+/// Few or collinear points make the root double: the slope vanishes with the value and their quotient is noise. The
+/// eigenvalue is then found the long way.
 fn largest_root(h: DMat3, start: f64) -> f64 {
     let gram = h.transpose() * h;
     let square = frobenius_squared(h);
@@ -118,8 +121,8 @@ fn largest_root(h: DMat3, start: f64) -> f64 {
     for _ in 0..60 {
         let x2 = x * x;
         let slope = (4.0 * x2 + 2.0 * c2) * x + c1;
-        if slope <= NEARLY_DOUBLE * x2 * x {
-            return trace_of_best_rotation(h);
+        if slope <= DOUBLE_ROOT * x2 * x {
+            return jacobi::largest_eigenpair(horn(h)).0;
         }
         let step = ((x2 + c2) * x2 + c1 * x + c0) / slope;
         if step <= 1e-15 * start {
@@ -130,10 +133,16 @@ fn largest_root(h: DMat3, start: f64) -> f64 {
     x
 }
 
-/// The largest tr(Rᵀh) by way of R itself: slower, and accurate for every matrix.
-fn trace_of_best_rotation(h: DMat3) -> f64 {
-    let r = best_rotation(h);
-    r.x_axis.dot(h.x_axis) + r.y_axis.dot(h.y_axis) + r.z_axis.dot(h.z_axis)
+/// Horn's symmetric matrix, whose quadratic form over unit quaternions is tr(Rᵀh).
+fn horn(h: DMat3) -> [[f64; 4]; 4] {
+    let m = h.transpose().to_cols_array_2d(); // m[i][j] = h(i, j)
+    let [[xx, xy, xz], [yx, yy, yz], [zx, zy, zz]] = m;
+    [
+        [xx + yy + zz, zy - yz, xz - zx, yx - xy],
+        [zy - yz, xx - yy - zz, xy + yx, xz + zx],
+        [xz - zx, xy + yx, yy - xx - zz, yz + zy],
+        [yx - xy, xz + zx, yz + zy, zz - xx - yy],
+    ]
 }
 
 /// The rotation R that makes tr(Rᵀ h) largest: the best rotation for `h = Σ w q pᵀ` about the centroids. It exists for
@@ -142,15 +151,7 @@ pub fn best_rotation(h: DMat3) -> DMat3 {
     if !h.is_finite() {
         return DMat3::IDENTITY;
     }
-    let m = h.transpose().to_cols_array_2d(); // m[i][j] = h(i, j)
-    let [[xx, xy, xz], [yx, yy, yz], [zx, zy, zz]] = m;
-    let k = [
-        [xx + yy + zz, zy - yz, xz - zx, yx - xy],
-        [zy - yz, xx - yy - zz, xy + yx, xz + zx],
-        [xz - zx, xy + yx, yy - xx - zz, yz + zy],
-        [yx - xy, xz + zx, yz + zy, zz - xx - yy],
-    ];
-    let [w, x, y, z] = super::jacobi::largest_eigenvector(k);
+    let [w, x, y, z] = jacobi::largest_eigenpair(horn(h)).1;
     let q = DQuat::from_xyzw(x, y, z, w);
     if q.is_finite() && q.length_squared() > 0.5 { DMat3::from_quat(q.normalize()) } else { DMat3::IDENTITY }
 }

@@ -1,7 +1,5 @@
 //! What the segmentation answers.
 
-#[cfg(doc)]
-use super::Method;
 use crate::warning::Warning;
 use serde::Serialize;
 
@@ -47,15 +45,17 @@ pub struct Steps {
     pub deformable: Vec<u8>,
     /// The ε that was used.
     pub epsilon: f64,
-    /// The γ that was used; 0 where none was, every feature founding a partition ([`Method::Tree`] by default).
+    /// The γ that was used; 0 where none was, every feature founding a partition ([`super::Method::Tree`] by default).
     pub gamma: f64,
     /// #F: distance (Eq. 5) from the set A at the start; infinite where no A is in reach.
     pub distance: Vec<f64>,
     /// The features in the order in which they were found.
     pub features: Vec<Feature>,
-    /// #F partition numbers after each round of clustering (§3.3) and, by [`Method::Tree`], the finest parts at the end.
+    /// #F partition numbers after each round of clustering (§3.3) and, by [`super::Method::Tree`], the finest parts at
+    /// the end.
     pub rounds: Vec<Vec<u32>>,
-    /// Merges from the finest parts to one part, pieces that do not touch included, cheapest first ([`Method::Tree`] only).
+    /// Merges from the finest parts to one part, pieces that do not touch included, cheapest first
+    /// ([`super::Method::Tree`] only).
     pub merges: Vec<Merge>,
     /// #F part numbers before boundaries were smoothed.
     pub unsmoothed: Vec<u32>,

@@ -4,7 +4,7 @@ use super::colour::{Srgb, oklch, srgb_to_linear};
 use glam::{Mat4, Vec3, Vec4};
 
 /// Number of 32-bit floats in the struct.
-pub const FLOATS: usize = 2 * 16 + 20 * 4;
+pub const FLOATS: usize = 2 * 16 + 21 * 4;
 
 /// The struct `Stage`.
 #[derive(Clone, Copy, Debug, Default)]
@@ -21,6 +21,7 @@ pub struct Frame {
     pub key: Vec4,
     pub lines: Vec4,
     pub moment: Vec4,
+    pub flow: Vec4,
     pub theme: Theme,
 }
 
@@ -56,6 +57,7 @@ impl Frame {
             self.key,
             self.lines,
             self.moment,
+            self.flow,
             t.key_light,
             t.sky_light,
             t.ground_light,

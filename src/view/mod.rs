@@ -3,6 +3,7 @@
 pub mod camera;
 pub mod colormap;
 pub mod colour;
+pub mod flow;
 pub mod frame;
 #[cfg(all(target_arch = "wasm32", feature = "page"))]
 pub mod gpu;

@@ -2,6 +2,7 @@
 
 use super::colormap::ColourMap;
 use super::colour::Srgb;
+use super::flow::spread;
 use super::palette::Palette;
 use super::surface::Surface;
 
@@ -20,6 +21,8 @@ pub struct Paint {
     labels: Vec<u32>,
     /// A bit for each style.
     marks: Vec<u8>,
+    /// When the paint arrives at each face while it flows in, 0 to 255; empty for everywhere at once.
+    arrivals: Vec<u8>,
     /// Palette numbers of the parts, in their order.
     slots: Vec<usize>,
     palette: Palette,
@@ -29,6 +32,7 @@ impl Paint {
     /// Bare clay for `faces` faces. The colours that parts had are remembered no longer.
     pub fn reset(&mut self, faces: usize) {
         self.slots.clear();
+        self.arrivals.clear();
         self.marks = vec![0; faces];
         self.clay();
     }
@@ -86,6 +90,11 @@ impl Paint {
         }
     }
 
+    /// Sets where paint that flows in comes from: see [`spread`].
+    pub fn flow_from(&mut self, surface: &Surface, sources: &[u32]) {
+        self.arrivals = spread(surface, self.marks.len(), sources);
+    }
+
     /// The colours of the parts, in their order.
     pub fn part_colours(&self) -> Vec<Srgb> {
         self.slots.iter().map(|&s| self.palette.colour(s)).collect()
@@ -97,14 +106,15 @@ impl Paint {
     }
 
     /// Two words a face: red, green, blue and mark (0 none, else style + 1) in a byte each, lowest first; boundary
-    /// bits in the low byte and the label plus one above (0 for none).
+    /// bits in the low byte, the label plus one (0 for none) in the two above, when the paint arrives in the top one.
     pub fn words(&self, surface: &Surface, faces: &[[u32; 3]]) -> Vec<[u32; 2]> {
         let bits = if self.labels.is_empty() { Vec::new() } else { surface.boundary_bits(faces, &self.labels) };
         let word = |(f, colour): (usize, &Srgb)| {
             let mark = 8 - self.marks.get(f).copied().unwrap_or(0).leading_zeros();
             let low = u32::from_le_bytes([colour[0], colour[1], colour[2], mark as u8]);
-            let label = self.labels.get(f).map_or(0, |&l| l.saturating_add(1).min(0x00FF_FFFF));
-            [low, u32::from(bits.get(f).copied().unwrap_or(0)) | label << 8]
+            let label = self.labels.get(f).map_or(0, |&l| l.saturating_add(1).min(0xFFFF));
+            let arrival = u32::from(self.arrivals.get(f).copied().unwrap_or(0));
+            [low, u32::from(bits.get(f).copied().unwrap_or(0)) | label << 8 | arrival << 24]
         };
         self.colours.iter().enumerate().map(word).collect()
     }

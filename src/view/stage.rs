@@ -1,9 +1,10 @@
 //! The stage: the figure, its paint, the camera and the light, and what of it the GPU does not have yet.
 
 use super::camera::{Ball, Camera, Window};
+use super::colour::srgb_to_linear;
 use super::frame::{Frame, Theme, light_map};
 use super::motion::{Extent, Moment, Motion};
-use super::paint::Paint;
+use super::paint::{CLAY, Paint};
 use super::picking::{Hit, pick};
 use super::surface::Surface;
 use glam::Vec3;
@@ -30,6 +31,7 @@ pub struct Stage {
     boundaries: bool,
     wires: bool,
     plain: bool,
+    flow: f32,
     hovered: Option<usize>,
     /// Packed normals of each shape, once it was seen.
     normals: Vec<Option<Vec<u32>>>,
@@ -67,6 +69,7 @@ impl Default for Stage {
             boundaries: true,
             wires: false,
             plain: false,
+            flow: 1.0,
             hovered: None,
             normals: vec![None],
             extents: vec![None],
@@ -83,6 +86,7 @@ impl Stage {
     pub fn set_motion(&mut self, motion: Motion) {
         self.paint.reset(motion.faces().len());
         self.hovered = None;
+        self.flow = 1.0;
         self.time = -1.0;
         self.take(motion);
     }
@@ -121,6 +125,19 @@ impl Stage {
         self.paint.parts(surface, labels, count)?;
         self.repaint();
         Ok(())
+    }
+
+    /// Lets paint flow in from some faces: nothing of it is seen until [`Stage::set_flow`] says so.
+    pub fn flow_from(&mut self, faces: &[u32]) {
+        let surface = self.surface.get_or_insert_with(|| Surface::new(&self.motion));
+        self.paint.flow_from(surface, faces);
+        self.flow = 0.0;
+        self.repaint();
+    }
+
+    /// Sets how far the paint has flowed, 0 to 1.
+    pub fn set_flow(&mut self, share: f32) {
+        self.changed(|s| &mut s.flow, if share >= 0.0 { share.min(1.0) } else { 1.0 });
     }
 
     /// The paint has changed.
@@ -304,6 +321,7 @@ impl Stage {
             key: key.extend(if self.plain { 0.0 } else { 0.8 }),
             lines: glam::Vec4::new(0.62 * ratio, 0.18 * ratio, on(self.boundaries, 1.0), on(self.wires, 0.4)),
             moment: glam::Vec4::new(moment.part, self.hovered.map_or(-1.0, |f| f as f32), label, 1.0 / 255.0),
+            flow: srgb_to_linear(CLAY).extend(self.flow),
             theme: Theme::new(self.dark),
         }
     }

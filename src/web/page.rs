@@ -147,6 +147,16 @@ impl Viewport {
         Ok(())
     }
 
+    /// Lets the paint flow in from some faces over clay; `set_flow` says how far it has come.
+    pub fn flow_from(&mut self, faces: &[u32]) {
+        self.stage.flow_from(faces);
+    }
+
+    /// Sets how far the paint has flowed, from 0 to 1 (everywhere).
+    pub fn set_flow(&mut self, share: f32) {
+        self.stage.set_flow(share);
+    }
+
     /// Sets whether lines are drawn where paint labels differ.
     pub fn set_boundaries(&mut self, on: bool) {
         self.stage.set_boundaries(on);
@@ -249,6 +259,16 @@ impl Viewport {
     /// screenshot, call `redraw`, `render` and `canvas.toBlob` one after another.
     pub fn redraw(&mut self) {
         self.stage.redraw();
+    }
+
+    /// Whether `render` would draw.
+    pub fn stale(&self) -> bool {
+        self.stage.stale().picture
+    }
+
+    /// How many frames the graphics have been given that they have not finished yet.
+    pub fn under_way(&self) -> usize {
+        self.renderer.gpu().under_way()
     }
 
     /// Draws a frame if anything changed since the last; whether it did.

@@ -234,6 +234,7 @@ fn describe_parts(result: &Segmentation) -> Reply {
 
 fn describe_steps(reply: &JsValue, steps: &Steps) -> Result<(), JsValue> {
     put(reply, "deformation", &single(&steps.deformation))?;
+    put(reply, "weight", &single(&steps.weight))?;
     put(reply, "deformable", &Uint8Array::from(steps.deformable.as_slice()))?;
     put(reply, "distance", &single(&steps.distance))?;
     put(reply, "epsilon", &steps.epsilon.into())?;

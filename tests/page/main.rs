@@ -3,6 +3,8 @@
 
 #[allow(dead_code, reason = "a harness offers more than is used today")]
 mod harness;
+mod looking;
 mod opening;
+mod phone;
 mod source;
 mod watching;

@@ -34,6 +34,12 @@ export const SMOOTHINGS = [
 /** How a slider's value reads. */
 export const reading = (slider, value) => (slider.format ?? number)(value);
 
+/** The value nearest to one that is wanted which a parameter's slider could give, at a finer step. */
+export function fitting(name, value) {
+  const { low, high } = SLIDERS.find((entry) => entry.name === name);
+  return Number(Math.min(Math.max(value, low), high).toPrecision(3));
+}
+
 /** Whether a value, from a link for example, is one that the controls could have given. */
 export function isValid(name, value) {
   const among = (options) => options.some(([option]) => option === value);

@@ -4,7 +4,7 @@ import { h, show } from '../dom.js';
 import { duration, number, percent, perMille, plural } from '../format.js';
 import { lesson } from '../lesson.js';
 import { costCurve, histogram } from '../plot.js';
-import { METHODS, reading, SLIDERS, SMOOTHINGS } from './parameters.js';
+import { fitting, METHODS, reading, SLIDERS, SMOOTHINGS } from './parameters.js';
 import { MARK } from './views.js';
 import { warnings } from './warnings.js';
 
@@ -24,7 +24,7 @@ function build(app) {
   const table = h('div');
   const folds = [
     parameterFold(app),
-    fold('Deformation', { content: [deformation] }),
+    fold('Deformable faces', { content: [deformation] }),
     fold('How it works', { load: () => lesson('parts') }),
     fold('Each part', { open: true, content: [table] }),
   ];
@@ -35,9 +35,7 @@ function build(app) {
     show(quality, qualityFacts(result));
     show(noticed, ...warnings(app, result.warnings));
     show(curve, ...curvePlot(app));
-    show(deformation,
-      histogram(result.deformation, result.deformable, epsilonMark(result), 'Histogram of the deformation distance'),
-      h('p', { class: 'small faint' }, 'Faces by deformation distance, logarithmic. Coloured: the deformable set A.'));
+    show(deformation, ...weightPlot(app));
     show(table, partTable(app));
   };
   app.on('result', showResult);
@@ -63,11 +61,17 @@ function qualityFacts(result) {
   ]);
 }
 
-/** The deformation distance that as many faces exceed as ε made deformable. */
-function epsilonMark({ deformation, deformable, epsilon }) {
-  const faces = deformable.reduce((sum, value) => sum + value, 0);
-  if (!faces || faces === deformable.length) return null;
-  return { value: deformation.toSorted()[deformation.length - faces], label: `ε = ${number(epsilon)}` };
+/** The weights that ε is compared with, and ε on them. */
+function weightPlot(app) {
+  const { weight, epsilon } = app.result;
+  const plot = histogram(weight, {
+    value: epsilon,
+    read: (value) => `ε = ${number(value)}`,
+    choose: (value) => app.setParameter('epsilon', fitting('epsilon', value)),
+  }, `Faces by the weight of their heaviest dual edge; ε = ${number(epsilon)}`);
+  if (!plot) return [h('p', { class: 'small faint' }, 'Nothing deforms: every face moves with its neighbours.')];
+  return [plot, h('p', { class: 'small faint' },
+    'How many faces have how heavy an edge (Eq. 5), logarithmic. Those above ε form the deformable set A. Drag ε to move it.')];
 }
 
 const MOST_ROWS = 60;

@@ -18,7 +18,7 @@ export const sourceStep = {
 };
 
 const ACCEPT = '.glb,.gltf,.bin,.obj,.off,.ply,model/gltf-binary,model/gltf+json';
-const DETAIL = [2_000, 6_000, 12_000, 40_000, 120_000];
+const DETAIL = [3_000, 12_000, 50_000, 200_000];
 const RATES = [6, 12, 24, 30, 60];
 const REFERENCES = [['bind', 'bind pose'], ['nodes', 'as placed in the file'], ['first-frame', 'first pose']];
 
@@ -87,6 +87,7 @@ function animationOptions(app) {
 }
 
 /** A creature has a name, a file its own. */
-const nameOf = ({ source, sequence }) => (source.kind === 'zoo' ? title(sequence.name) : sequence.name);
+const nameOf = ({ source, sequence }) =>
+  (source.kind === 'zoo' ? title(sequence.name) : sequence.name.replace(/\.(glb|gltf|obj|off|ply)$/i, ''));
 
 const isGltf = ({ files }) => files?.some(({ name }) => /\.(glb|gltf)$/i.test(name));

@@ -1,7 +1,7 @@
 //! glTF 2.0 and GLB: skins, morph targets and node animation, in world space.
 //!
 //! The Khronos Group, *glTF 2.0 Specification* (2021). The `gltf` crate gives the types of the document; reading
-//! what they point to, with every size and index checked, is [`accessor`]'s.
+//! what they point to, with every size and index checked, is `accessor`'s.
 
 mod accessor;
 mod buffers;

@@ -1,7 +1,7 @@
 //! The device and the surface that it draws to.
 
 use std::sync::Arc;
-use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 use wgpu::{
     Backends, CompositeAlphaMode, DeviceDescriptor, Instance, InstanceDescriptor, Limits, PresentMode,
     RequestAdapterOptions, SurfaceColorSpace, SurfaceConfiguration, SurfaceTarget, SurfaceTexture, TextureFormat,
@@ -33,6 +33,7 @@ pub struct Gpu {
     surface: wgpu::Surface<'static>,
     size: (u32, u32),
     lost: Arc<AtomicBool>,
+    under_way: Arc<AtomicUsize>,
 }
 
 impl Gpu {
@@ -76,12 +77,28 @@ impl Gpu {
                 flag.store(true, Ordering::Relaxed);
             }
         }));
-        Ok(Self { backend, device, queue, format, longest, surface, size: (0, 0), lost })
+        Ok(Self { backend, device, queue, format, longest, surface, size: (0, 0), lost, under_way: Arc::default() })
     }
 
     /// Whether the device is gone for good.
     pub fn lost(&self) -> bool {
         self.lost.load(Ordering::Relaxed)
+    }
+
+    /// Says that all that was submitted up to now makes a frame.
+    pub fn submitted(&self) {
+        self.under_way.fetch_add(1, Ordering::Relaxed);
+        let count = self.under_way.clone();
+        self.queue.on_submitted_work_done(move || {
+            count.fetch_sub(1, Ordering::Relaxed);
+        });
+    }
+
+    /// How many frames were submitted that are not drawn yet.
+    pub fn under_way(&self) -> usize {
+        // On WebGL 2 only this looks what has become of them.
+        let _ = self.device.poll(wgpu::PollType::Poll);
+        self.under_way.load(Ordering::Relaxed)
     }
 
     /// Whether textures can hold a mesh with so many corners, even if each has a normal of its own.

@@ -90,6 +90,9 @@ fn depth_fragment(in: Deep, @builtin(front_facing) front: bool) -> @location(0) 
 @group(2) @binding(3) var ground_sampler: sampler;
 @group(2) @binding(4) var hollows: texture_2d<f32>;
 
+// Width of the front of paint that flows in, of the whole way.
+const FLOW_FRONT = 0.18;
+
 struct Seen {
     @builtin(position) position: vec4f,
     @location(0) world: vec3f,
@@ -99,15 +102,21 @@ struct Seen {
     @location(4) @interpolate(flat) bits: u32,
 }
 
+// How much of the paint has arrived at a face while it flows in: it comes over a few faces at a time.
+fn arrived(paint: vec2u) -> f32 {
+    let when = f32(paint.y >> 24u) / 255.0;
+    return clamp((stage.flow.w * (1.0 + FLOW_FRONT) - when) / FLOW_FRONT, 0.0, 1.0);
+}
+
 // Colour of a face: its paint, its mark, and what the pointer does to it.
 fn albedo_of(face: u32, paint: vec2u) -> vec3f {
     let low = vec4u(paint.x, paint.x >> 8u, paint.x >> 16u, paint.x >> 24u) & vec4u(255u);
-    var albedo = decode(vec3f(low.xyz) / 255.0);
+    var albedo = mix(stage.flow.rgb, decode(vec3f(low.xyz) / 255.0), arrived(paint));
     if low.w > 0u {
         let accent = stage.accents[min(low.w - 1u, 3u)];
         albedo = mix(albedo, accent.rgb, accent.a);
     }
-    let label = f32(paint.y >> 8u);
+    let label = f32((paint.y >> 8u) & 65535u);
     if label > 0.0 && label == stage.moment.z {
         albedo = mix(albedo, vec3f(1.0), 0.12);
     }
@@ -124,7 +133,8 @@ fn picture_vertex(@builtin(vertex_index) i: u32) -> Seen {
     let which = i % 3u;
     let weights = vec3f(f32(which == 0u), f32(which == 1u), f32(which == 2u));
     let paint = textureLoad(paints, texel(i / 3u), 0).xy;
-    return Seen(stage.view * vec4f(p, 1.0), p, normal_of(c), weights, albedo_of(i / 3u, paint), paint.y & 63u);
+    let bits = select(0u, paint.y & 63u, arrived(paint) > 0.5);
+    return Seen(stage.view * vec4f(p, 1.0), p, normal_of(c), weights, albedo_of(i / 3u, paint), bits);
 }
 
 // How open the surface is to the sky, and the share of the key light that arrives: from the four nearest pixels of

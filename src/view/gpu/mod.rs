@@ -199,6 +199,7 @@ impl Renderer {
             surface(&mut pass, &p.picture);
         }
         self.gpu.queue.submit([encoder.finish()]);
+        self.gpu.submitted();
         self.gpu.queue.present(picture);
         true
     }

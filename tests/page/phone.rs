@@ -1,0 +1,59 @@
+//! The page in a hand.
+
+use crate::harness::{Backend, Page, Screen};
+use crate::opening::opened;
+
+/// Pairs of controls that lie over one another, and what is wider than the screen.
+const CLASHES: &str = "(() => {
+    const shown = (e) => { const r = e.getBoundingClientRect();
+        return e.checkVisibility() && r.width > 0 && r.right > 0 && r.left < innerWidth && r.bottom > 0 && r.top < innerHeight; };
+    const all = [...document.querySelectorAll('.frame button, .frame select, .frame .scrub, .frame .track, .brand h1')].filter(shown);
+    const sheet = document.querySelector('#panel');
+    const under = (e) => !sheet.hidden && !sheet.contains(e) && !e.closest('.panel-opener');
+    const seen = all.filter((e) => !under(e));
+    const name = (e) => e.getAttribute('aria-label') ?? e.innerText ?? e.className;
+    const clashes = [];
+    seen.forEach((a, i) => seen.slice(i + 1).forEach((b) => {
+        if (a.contains(b) || b.contains(a)) return;
+        const [r, s] = [a.getBoundingClientRect(), b.getBoundingClientRect()];
+        const across = Math.min(r.right, s.right) - Math.max(r.left, s.left);
+        const down = Math.min(r.bottom, s.bottom) - Math.max(r.top, s.top);
+        if (across > 1 && down > 1) clashes.push(`${name(a)} lies over ${name(b)}`);
+    }));
+    if (document.documentElement.scrollWidth > innerWidth) clashes.push('the page scrolls sideways');
+    for (const e of seen) if (e.getBoundingClientRect().right > innerWidth + 1) clashes.push(`${name(e)} is cut off`);
+    return clashes;
+})()";
+
+fn nothing_clashes(page: &mut Page, when: &str) {
+    assert_eq!(page.evaluate(CLASHES), serde_json::json!([]), "{when}");
+}
+
+#[test]
+#[ignore = "drives the built page in Chromium: run by `cargo xtask test`"]
+fn everything_has_its_place_on_a_phone() {
+    let mut page = opened(Backend::WebGl2, Screen::Phone, "");
+    assert_eq!(page.state()["panel"], false, "the panel waits until it is asked for");
+    nothing_clashes(&mut page, "with the panel away");
+    for view in ["features", "distance", "parts"] {
+        page.evaluate(&format!("document.querySelector('#control-view-{view}').click()"));
+        nothing_clashes(&mut page, view);
+    }
+    page.click(".step-button");
+    page.wait_until("sinew.state().step === 'source' && sinew.state().panel", 2.0);
+    page.rest(0.4);
+    page.screenshot("sheet");
+    nothing_clashes(&mut page, "with the sheet");
+    page.click("#panel .icon-button");
+    page.wait_until("!sinew.state().panel", 2.0);
+}
+
+#[test]
+#[ignore = "drives the built page in Chromium: run by `cargo xtask test`"]
+fn nothing_clashes_on_a_desk() {
+    let mut page = opened(Backend::WebGl2, Screen::Small, "");
+    nothing_clashes(&mut page, "small");
+    page.resize(Screen::Desktop);
+    page.rest(0.3);
+    nothing_clashes(&mut page, "desktop");
+}
