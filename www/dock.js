@@ -20,8 +20,8 @@ export function dock(host, app) {
 
   const showViews = () => {
     show(views, choice('View', VIEWS.map(({ id, label, title }) => [id, label, title]), app.view, (id) => app.setView(id), 'ribbon'));
-    views.querySelector(':checked')?.parentElement.scrollIntoView?.({ block: 'nearest', inline: 'center' });
   };
+  const reveal = () => views.querySelector(':checked')?.parentElement.scrollIntoView?.({ block: 'nearest', inline: 'center' });
   const update = () => {
     host.hidden = app.step !== 'parts' || !app.result;
     if (host.hidden) return;
@@ -36,7 +36,9 @@ export function dock(host, app) {
     else show(legend, h('p', { class: 'small' }, said.text));
   };
   app.on('view step result', update);
+  app.on('view step', reveal);
   update();
+  reveal();
 }
 
 function partsSlider(app) {

@@ -32,7 +32,7 @@ function build(app) {
     const { result } = app;
     for (const box of [quality, noticed, curve, ...folds]) box.hidden = !result;
     if (!result) return;
-    show(quality, qualityFacts(result), h('p', { class: 'small faint' },
+    show(quality, qualityFacts(result), h('p', { class: 'small faint note' },
       'Residual: how far faces are from moving rigidly with their part, in thousandths (‰) of the size of the whole.'));
     show(noticed, ...warnings(app, result.warnings));
     show(curve, ...curvePlot(app));
