@@ -23,9 +23,11 @@ export function dock(host, app) {
   };
   const reveal = () => views.querySelector(':checked')?.parentElement.scrollIntoView?.({ block: 'nearest', inline: 'center' });
   const update = () => {
+    const { hidden } = host;
     host.hidden = app.step !== 'parts' || !app.result;
     if (host.hidden) return;
     if (views.querySelector(':checked')?.value !== app.view) showViews();
+    if (hidden) reveal();
     const said = VIEWS.find(({ id }) => id === app.view).legend(app);
     if (said.kind === 'parts') {
       partsControl.update();
