@@ -20,12 +20,14 @@ export function dock(host, app) {
 
   const showViews = () => {
     show(views, choice('View', VIEWS.map(({ id, label, title }) => [id, label, title]), app.view, (id) => app.setView(id), 'ribbon'));
-    views.querySelector(':checked')?.parentElement.scrollIntoView?.({ block: 'nearest', inline: 'center' });
   };
+  const reveal = () => views.querySelector(':checked')?.parentElement.scrollIntoView?.({ block: 'nearest', inline: 'center' });
   const update = () => {
+    const { hidden } = host;
     host.hidden = app.step !== 'parts' || !app.result;
     if (host.hidden) return;
     if (views.querySelector(':checked')?.value !== app.view) showViews();
+    if (hidden) reveal();
     const said = VIEWS.find(({ id }) => id === app.view).legend(app);
     if (said.kind === 'parts') {
       partsControl.update();
@@ -36,7 +38,9 @@ export function dock(host, app) {
     else show(legend, h('p', { class: 'small' }, said.text));
   };
   app.on('view step result', update);
+  app.on('view step', reveal);
   update();
+  reveal();
 }
 
 function partsSlider(app) {

@@ -39,10 +39,13 @@ export function keys({ app, stage, timeline, sheet }) {
 function mine({ target, key }) {
   if (!(target instanceof Element)) return false;
   if (target.closest('select')) return key !== 'Escape';
-  if (target.closest('input[type=range], input[type=radio]')) return key.startsWith('Arrow') || key === ' ';
+  if (target.closest('input[type=range], input[type=radio]')) return key.startsWith('Arrow') || (key === ' ' && chooses(target));
   if (target.closest('button, summary, a, input, label')) return key === ' ' || key === 'Enter';
   return false;
 }
+
+/** Whether Space would choose this: only what is not chosen yet has a use for it. */
+const chooses = (input) => input.type === 'radio' && !input.checked;
 
 function open(sheet, shortcuts) {
   const close = h('button', { type: 'button', class: 'button', on: { click: () => sheet.close() } }, 'Close');

@@ -14,12 +14,13 @@ const AHEAD = 1;
 /** A frame that takes longer than this was asleep, in milliseconds. */
 const ASLEEP = 4000;
 
+/** Pixels to a CSS pixel, at most, from the first to the last resort. */
+const RATIOS = [Infinity, Infinity, 1, 0.6];
+
 export class Pace {
   constructor() {
-    /** Without shadows. */
-    this.plain = false;
-    /** With one pixel to a CSS pixel. */
-    this.coarse = false;
+    /** How many things have been left out: shadows, then pixels. */
+    this.level = 0;
     /** When the last frame began, and what the last finished one took. */
     this.last = 0;
     this.took = 0;
@@ -28,6 +29,16 @@ export class Pace {
     this.done = 0;
     this.rests = 0;
     this.times = [];
+  }
+
+  /** Whether to draw without shadows. */
+  get plain() {
+    return this.level > 0;
+  }
+
+  /** Pixels to a CSS pixel. */
+  get ratio() {
+    return Math.min(devicePixelRatio, RATIOS[this.level]);
   }
 
   /**
@@ -40,26 +51,30 @@ export class Pace {
     return this.begun.length <= (this.took > TIRING ? 0 : AHEAD) && now >= this.rests;
   }
 
-  /** A frame has begun. @returns {boolean} whether the picture is to be simpler from now on */
-  began(now) {
+  /**
+   * A frame has begun.
+   * @param {number} now @param {boolean} settled whether it is one that is drawn in full because nothing moves
+   * @returns {boolean} whether the picture is to be simpler from now on
+   */
+  began(now, settled) {
     this.last = now;
-    this.begun.push(now);
+    this.begun.push({ now, settled });
     const total = this.times.reduce((sum, time) => sum + time, 0);
-    if (total < FOR_LONG || (this.plain && this.coarse)) return false;
+    if (total < FOR_LONG || this.level === RATIOS.length - 1) return false;
     const middle = this.times.sort((a, b) => a - b)[this.times.length >> 1];
     this.times = [];
     if (middle <= SLOW) return false;
-    if (this.plain) this.coarse = true;
-    else this.plain = true;
+    // One pixel to a CSS pixel is no relief where there are no more.
+    this.level += this.level === 1 && devicePixelRatio <= 1 ? 2 : 1;
     return true;
   }
 
   #finished(now, begun) {
     // A frame that waited for the one before it began when that was done.
-    const took = now - Math.max(begun, this.done);
+    const took = now - Math.max(begun.now, this.done);
     this.done = now;
     this.took = took < ASLEEP ? took : 0;
     this.rests = this.took > TIRING ? now + this.took : 0;
-    this.times.push(this.took);
+    if (!begun.settled) this.times.push(this.took);
   }
 }

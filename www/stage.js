@@ -37,7 +37,7 @@ export class Stage extends EventTarget {
     this.pace = new Pace();
     /** When new paint began to flow in; null: it is there. */
     this.flowing = null;
-    /** Whether the picture that is shown has all its shadows, even where frames are slow. */
+    /** Whether the picture that is shown is drawn in full, even where frames are slow. */
     this.settled = false;
     this.kept = { mesh: null, time: -1, loop: false, paint: [['paint_clay']], boundaries: true, wireframe: false, marks: new Map(),
       camera: null, dark: false, insets: [0, 0, 0, 0] };
@@ -98,7 +98,7 @@ export class Stage extends EventTarget {
 
   #fit() {
     const { width, height } = this.host.getBoundingClientRect();
-    if (width >= 1 && height >= 1) this.view?.resize(width, height, this.pace.coarse ? 1 : devicePixelRatio);
+    if (width >= 1 && height >= 1) this.view?.resize(width, height, this.settled ? devicePixelRatio : this.pace.ratio);
   }
 
   #resize() {
@@ -115,27 +115,22 @@ export class Stage extends EventTarget {
     this.#settle(now);
     // Without a change nothing is drawn, and nothing is spent.
     if (!this.view.render()) return;
-    if (this.pace.began(now)) this.#simplify();
+    if (this.pace.began(now, this.settled)) this.#simplify();
     if (this.kept.mesh) this.dispatchEvent(new Event('drawn'));
   }
 
-  /** Draws as simply as the pace asks. */
-  #simplify() {
-    this.view.set_plain(this.pace.plain);
-    if (this.pace.coarse) this.#fit();
+  /** Draws as simply as the pace asks, or with all there is. */
+  #simplify(settled = false) {
+    this.settled = settled;
+    this.view.set_plain(this.pace.plain && !settled);
+    this.#fit();
   }
 
-  /** Where frames are slow, a picture that has come to rest gets its shadows after all. */
+  /** Where frames are slow, a picture that has come to rest is drawn in full after all. */
   #settle(now) {
     if (!this.pace.plain) return;
     const still = !this.view.stale();
-    if (still && !this.settled && now - this.pace.last > SETTLES) {
-      this.settled = true;
-      this.view.set_plain(false);
-    } else if (!still && this.settled) {
-      this.settled = false;
-      this.view.set_plain(true);
-    }
+    if (still !== this.settled && (!still || now - this.pace.last > SETTLES)) this.#simplify(still);
   }
 
   #flow(now) {
@@ -283,10 +278,9 @@ export class Stage extends EventTarget {
   /** The picture as it is now, as a PNG. @returns {Promise<Blob>} */
   async picture() {
     if (!this.view) throw new Error('There is no picture to save without a GPU.');
-    this.view.set_plain(false);
+    this.#simplify(true);
     this.view.redraw();
     this.view.render();
-    this.view.set_plain(this.pace.plain);
     const blob = await new Promise((resolve) => this.canvas.toBlob(resolve, 'image/png'));
     if (!blob) throw new Error('The browser could not save the picture.');
     return blob;

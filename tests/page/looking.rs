@@ -29,7 +29,7 @@ fn parts_and_views(backend: Backend) {
     }
     let mut last = None;
     for view in VIEWS {
-        page.click(&format!("#control-view-{view}"));
+        page.click(&format!("label:has(#control-view-{view})"));
         page.wait_until(&format!("sinew.state().view === '{view}'"), AT_ONCE);
         page.rest(0.4);
         let picture = page.picture_of("canvas", &format!("view-{view}"));
@@ -41,7 +41,8 @@ fn parts_and_views(backend: Backend) {
         assert!(changed > 0.0 || ["unsmoothed", "parts"].contains(&view), "{view} looks like the view before it");
         last = Some(picture);
     }
-    page.hover("canvas", (0.5, 0.45));
+    // The creature's trunk.
+    page.hover("canvas", (0.42, 0.36));
     page.wait_until("!document.querySelector('#tag').hidden", 2.0 * AT_ONCE);
     let tag = page.evaluate("document.querySelector('#tag').innerText");
     for word in ["Face", "Part", "Deformation"] {
@@ -122,15 +123,15 @@ fn a_link_brings_everything_back() {
     let mut page = opened(Backend::WebGl2, Screen::Small, "#v1;zoo=camel;faces=3000");
     slide(&mut page, "#control-number-of-parts", 7);
     page.wait_until("sinew.state().parts === 7", 5.0);
-    page.click("#control-view-distance");
+    page.click("label:has(#control-view-distance)");
     page.press(" ");
     page.drag("canvas", (90.0, 20.0));
     page.rest(0.8);
     let hash = page.evaluate("location.hash");
     let before = page.state();
     assert_eq!((&before["source"]["name"], &before["playing"]), (&"camel".into(), &false.into()), "{before}");
-    page.go("pkg/page.js");
-    page.go(hash.as_str().unwrap_or_default());
+    page.go(&format!("?again{}", hash.as_str().unwrap_or_default()));
+    page.wait_until("location.search === '?again'", 10.0);
     page.wait_until(SETTLED, 20.0);
     page.wait_until("sinew.state().parts === 7", 5.0);
     page.rest(0.8);

@@ -27,6 +27,8 @@ fn planted_problems_are_noticed() {
         assert!(problems.contains(planted), "`{planted}` went unnoticed: {problems}");
     }
     page.expect_problem("planted");
+    // The browser looks for an icon of a text by itself.
+    page.expect_problem("favicon.ico");
     page.expect_problem("other.example");
     assert_eq!(page.problems(), [""; 0]);
 }

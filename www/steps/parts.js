@@ -32,7 +32,8 @@ function build(app) {
     const { result } = app;
     for (const box of [quality, noticed, curve, ...folds]) box.hidden = !result;
     if (!result) return;
-    show(quality, qualityFacts(result));
+    show(quality, qualityFacts(result), h('p', { class: 'small faint note' },
+      'Residual: how far faces are from moving rigidly with their part, in thousandths (‰) of the size of the whole.'));
     show(noticed, ...warnings(app, result.warnings));
     show(curve, ...curvePlot(app));
     show(deformation, ...weightPlot(app));
@@ -55,7 +56,7 @@ function qualityFacts(result) {
   return facts([
     ['Parts', String(result.parts.length)],
     ['Residual', perMille(result.rigid_residual),
-      'Rms distance of faces from where their part’s best rigid motion puts them, in thousandths of the diagonal'],
+      'Rms distance of faces from where their part’s best rigid motion puts them, over the diagonal of the bounding box'],
     ['Before smoothing', perMille(result.residual_before_smoothing)],
     seconds > 0 && ['Computed in', duration(seconds), result.seconds.map(([name, value]) => `${name}: ${duration(value)}`).join('\n')],
   ]);

@@ -132,7 +132,7 @@ export const VIEWS = [
     paint: (app) => parts(app, app.result.unsmoothed),
     legend: ({ result }) => ({
       kind: 'words',
-      text: `Residual ${number(1000 * result.residual_before_smoothing)} ‰ of the diagonal before smoothing, ${number(1000 * result.rigid_residual)} ‰ after`,
+      text: `Residual ${number(1000 * result.residual_before_smoothing)} ‰ of its size before smoothing, ${number(1000 * result.rigid_residual)} ‰ after`,
     }),
   },
   {
