@@ -129,6 +129,22 @@ fn what_moves_as_one_is_one_part_however_many_pieces_it_has() {
 }
 
 #[test]
+fn clothes_belong_to_what_they_cover() {
+    let person = creature("person", 6_000, true);
+    let body = &person.sequence;
+    let first = body.reference().len() as u32;
+    let worn = |p: &[DVec3]| p.iter().copied().chain(p.iter().map(|&p| p + DVec3::new(0.0, 0.0, 2e-3))).collect();
+    let faces = body.faces().iter().copied().chain(body.faces().iter().map(|f| f.map(|v| v + first))).collect();
+    let poses = body.poses().iter().map(|p| Pose { positions: worn(&p.positions), ..p.clone() }).collect();
+    let dressed = Sequence::new("dressed", faces, worn(body.reference()), poses).expect("a sequence");
+    let result = by_default(&dressed);
+    let twice: Vec<u32> = person.labels.iter().chain(&person.labels).copied().collect();
+    let agreement = agreement(&dressed, &result.labels, &twice);
+    println!("{} parts for {} bones in two layers, agreement {agreement:.3}", result.parts.len(), person.parts.len());
+    assert!(result.parts.len() <= person.parts.len() + 2 && agreement >= 0.9);
+}
+
+#[test]
 fn two_bodies_that_move_apart_are_two_parts() {
     let person = creature("person", 2_000, false).sequence;
     let rigid = rigidly_moved(&person);

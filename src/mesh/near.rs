@@ -7,6 +7,9 @@ use glam::DVec3;
 /// Faces of one piece that are asked for their nearest face on another piece; more are thinned out evenly.
 const ASKED: usize = 400;
 
+/// Faces of one cell that are asked for a face of another piece against which they lie.
+const FELT: usize = 30;
+
 /// Pairs of faces that join all connected pieces into one: each piece to the piece nearest to it (by face centroids),
 /// then the groups so made, until all hang together (Borůvka's minimum spanning tree). Empty for a mesh in one piece.
 pub fn bridges(graph: &DualGraph, centroids: &[DVec3]) -> Vec<[u32; 2]> {
@@ -47,6 +50,32 @@ pub fn bridges(graph: &DualGraph, centroids: &[DVec3]) -> Vec<[u32; 2]> {
         }
     }
     bridges
+}
+
+/// Pairs of faces of different pieces where the cells of a mesh lie against each other, as a sleeve lies on an arm: from
+/// some faces of every cell, evenly thinned, the nearest face of another piece not farther than `reach` (a length, between
+/// centroids). `cell` is #F cell numbers, each cell within one piece. Empty for a mesh in one piece.
+pub fn contacts(graph: &DualGraph, centroids: &[DVec3], cell: &[u32], reach: f64) -> Vec<[u32; 2]> {
+    let (piece, count) = graph.pieces();
+    if count < 2 {
+        return Vec::new();
+    }
+    let cells = cell.iter().max().map_or(0, |&m| m as usize + 1);
+    let mut faces_of = vec![Vec::new(); cells];
+    for (f, &c) in cell.iter().enumerate() {
+        faces_of[c as usize].push(f as u32);
+    }
+    let tree = KdTree::new(centroids);
+    let mut contacts = Vec::new();
+    for own in &faces_of {
+        for &f in own.iter().step_by(own.len().div_ceil(FELT).max(1)) {
+            let other = |face: u32| piece[face as usize] != piece[f as usize];
+            if let Some((_, face)) = tree.nearest(centroids[f as usize], reach * reach, &other) {
+                contacts.push([f, face]);
+            }
+        }
+    }
+    contacts
 }
 
 /// A balanced k-d tree over points, laid out in place.
@@ -105,6 +134,15 @@ impl<'a> KdTree<'a> {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn only_what_lies_close_is_in_contact() {
+        // Four single faces along a line, at 0, 1, 5 and 5.5, each a piece and a cell.
+        let faces: Vec<[u32; 3]> = (0..4).map(|i| [3 * i, 3 * i + 1, 3 * i + 2]).collect();
+        let centroids = [0.0, 1.0, 5.0, 5.5].map(|x| DVec3::new(x, 0.0, 0.0));
+        let found = contacts(&DualGraph::new(&faces), &centroids, &[0, 1, 2, 3], 0.7);
+        assert_eq!(found, [[2, 3], [3, 2]]);
+    }
 
     #[test]
     fn pieces_hang_together_by_their_nearest_faces() {

@@ -40,6 +40,11 @@ impl Geometry {
     pub fn bridges(&self) -> Vec<[u32; 2]> {
         near::bridges(&self.graph, &self.centroids)
     }
+
+    /// Pairs of faces where cells of different pieces (#F cell numbers) lie against each other, within `reach`.
+    pub fn contacts(&self, cell: &[u32], reach: f64) -> Vec<[u32; 2]> {
+        near::contacts(&self.graph, &self.centroids, cell, reach)
+    }
 }
 
 /// What lengths are multiplied by: 1 over the diagonal of the reference pose, 1 where that is no number.

@@ -20,6 +20,12 @@ use crate::warning::Warning;
 /// Finest parts of the merge tree: enough that every joint lies between two of them.
 const FINEST: usize = 240;
 
+/// Pieces beyond which no room is made for the cutting of the others.
+const MOST_PIECES: usize = 1000;
+
+/// Faces of different pieces whose centroids are closer than this (at unit diagonal) lie against each other.
+const CONTACT: f64 = 0.02;
+
 /// Landmark faces that stand for all faces in the averages of Eq. 7.
 const LANDMARKS: usize = 64;
 
@@ -282,11 +288,16 @@ fn grow_tree(
     partitions: usize,
 ) -> (Finest, Vec<Merge>) {
     let graph = &geometry.graph;
-    let moments = finest::split_cells(graph, weights, faces, &mut labels, partitions, FINEST);
+    // A piece needs no cutting to be a cell; what is cut is what many small pieces would otherwise leave no room for.
+    let (_, pieces) = graph.pieces();
+    let wanted = FINEST + (pieces - 1).min(MOST_PIECES);
+    let moments = finest::split_cells(graph, weights, faces, &mut labels, partitions, wanted);
     let (count, residual) = (moments.len(), moments.iter().map(motion::residual).sum());
     let mut pairs = graph.touching(&labels);
-    // Pieces that do not touch (eyes in a head, the links of a robot) may join the piece that is nearest.
-    pairs.extend(geometry.bridges().iter().map(|bridge| bridge.map(|f| labels[f as usize])).map(|[a, b]| (a, b)));
+    // Pieces that share no edge may join the nearest (eyes in a head, the links of a robot) and what they lie against
+    // (a sleeve on an arm).
+    let near = geometry.bridges().into_iter().chain(geometry.contacts(&labels, CONTACT));
+    pairs.extend(near.map(|pair| pair.map(|f| labels[f as usize])).map(|[a, b]| (a, b)));
     let merges = merge_tree::build(moments, &pairs);
     (Finest { labels, count, residual }, merges)
 }
