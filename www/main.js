@@ -37,11 +37,13 @@ stage.addEventListener('drawn', () => {
   performance.mark('first-picture');
 });
 stage.addEventListener('no-gpu', () => {
+  ready.pictured = true; // There will be none.
   element('no-gpu').hidden = false;
   if (stage.canvas) stage.canvas.hidden = true;
 });
 stage.addEventListener('trouble', ({ error }) => app.say(error.message));
 stage.started.catch((error) => {
+  ready.pictured = true;
   element('no-gpu').hidden = false;
   console.error(error);
 });
@@ -126,7 +128,7 @@ function goTo({ parts, time, reference, camera }) {
 /** For tests and for measuring. */
 window.sinew = {
   get ready() {
-    return ready.segmented;
+    return ready.segmented && ready.pictured;
   },
   state: () => ({
     backend: stage.backend,
