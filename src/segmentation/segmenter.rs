@@ -41,7 +41,7 @@ const REFINEMENTS: usize = 12;
 
 /// How strongly rigidity holds a boundary against smoothing at first, how often the hold is tightened, and the growth of
 /// the residual that smoothing may cost.
-const PULL: f64 = 30.0;
+const PULL: f64 = 50.0;
 const TIGHTER: f64 = 4.0;
 const TRIES: usize = 4;
 const SMOOTHING_COST: f64 = 1.08;
