@@ -15,7 +15,7 @@ const AHEAD = 1;
 const ASLEEP = 4000;
 
 /** Pixels to a CSS pixel, at most, from the first to the last resort. */
-const RATIOS = [Infinity, Infinity, 1];
+const RATIOS = [Infinity, Infinity, 1, 0.6];
 
 export class Pace {
   constructor() {
@@ -64,9 +64,8 @@ export class Pace {
     const middle = this.times.sort((a, b) => a - b)[this.times.length >> 1];
     this.times = [];
     if (middle <= SLOW) return false;
-    // One pixel to a CSS pixel is no relief where there are no more; fewer would be ugly.
-    if (this.level === 1 && devicePixelRatio <= 1) return false;
-    this.level += 1;
+    // One pixel to a CSS pixel is no relief where there are no more.
+    this.level += this.level === 1 && devicePixelRatio <= 1 ? 2 : 1;
     return true;
   }
 
