@@ -1,0 +1,1 @@
+//! The few points that govern a motion.

@@ -1,0 +1,1 @@
+//! One mesh made to move like another.
