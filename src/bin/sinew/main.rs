@@ -5,6 +5,7 @@ mod inspect;
 mod keypoints;
 mod output;
 mod segment;
+mod weights;
 mod zoo;
 
 use clap::{Parser, Subcommand};
@@ -26,6 +27,8 @@ enum Command {
     Segment(segment::Segment),
     /// Choose the few points that govern a motion
     Keypoints(keypoints::KeyPointsCommand),
+    /// Bounded biharmonic weights of given vertices
+    Weights(weights::WeightsCommand),
     /// Make a creature
     Zoo(zoo::Zoo),
 }
@@ -44,6 +47,7 @@ fn main() -> ExitCode {
         Command::Inspect(command) => command.run(),
         Command::Segment(command) => command.run(),
         Command::Keypoints(command) => command.run(),
+        Command::Weights(command) => command.run(),
         Command::Zoo(command) => command.run(),
     };
     match result {
