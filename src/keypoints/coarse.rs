@@ -7,6 +7,9 @@ use crate::linalg::rigid_fit::Moments;
 use crate::skinning::{Ring, features};
 use glam::DVec3;
 
+/// Gradients of vertices, over all poses, that are kept.
+const MOST_GRADIENTS: usize = 500_000;
+
 /// A coarse mesh, its candidates, and what trying a set needs again and again.
 pub struct Coarse {
     /// Its vertices are in a banded order; `origin` are vertices of the *fine* surface.
@@ -57,7 +60,8 @@ impl Coarse {
         }
         let energy = Energy::new(&surface.laplacian, piece);
         let displacements = surface.poses.iter().map(|pose| displacements(&surface, pose)).collect();
-        let features = surface.features(gammas);
+        let all: Vec<usize> = (0..surface.poses.len()).collect();
+        let features = surface.features(&all, gammas);
         let nearest = nearest_of_each_piece(&surface);
         Self { surface, energy, candidates, displacements, features, nearest }
     }
@@ -75,11 +79,13 @@ impl Coarse {
 }
 
 impl Surface {
-    /// Rotations and stretches of the vertices over the poses (Eq. 15).
-    pub fn features(&self, [gamma_rotation, gamma_shear]: [f64; 2]) -> Vec<f64> {
+    /// Rotations and stretches of the vertices over some poses (Eq. 15); over fewer of them where that would be many
+    /// numbers.
+    pub fn features(&self, poses: &[usize], [gamma_rotation, gamma_shear]: [f64; 2]) -> Vec<f64> {
         let (edges, stiffness) = (&self.laplacian.edges, &self.laplacian.cotangents);
         let ring = Ring { faces: &self.faces, edges, stiffness, reference: &self.reference };
-        let poses: Vec<&[DVec3]> = self.poses.iter().map(Vec::as_slice).collect();
+        let step = (poses.len() * self.reference.len()).div_ceil(MOST_GRADIENTS).clamp(1, poses.len().max(1));
+        let poses: Vec<&[DVec3]> = poses.iter().step_by(step).map(|&t| self.poses[t].as_slice()).collect();
         features(&ring, &poses, gamma_rotation, gamma_shear)
     }
 }
