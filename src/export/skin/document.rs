@@ -47,7 +47,10 @@ pub fn write(skin: &Skin, tracks: &[Vec<Link>], centres: &[DVec3], joints: &[Joi
         document["materials"] = json!([glb::material(0, &[CLAY], &[skin.name.to_owned()])]);
         if !animation.channels.is_empty() {
             document["animations"] = json!([{
-                "name": skin.name, "channels": animation.channels, "samplers": animation.samplers,
+                "name": skin.name,
+                "channels": animation.channels,
+                "samplers": animation.samplers,
+                "extras": { "poseNames": skin.poses.iter().map(|pose| pose.name).collect::<Vec<_>>() },
             }]);
         }
     }
