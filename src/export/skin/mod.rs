@@ -1,8 +1,8 @@
 //! A moving mesh as a skin, in one GLB file: small, whatever the number of vertices and poses.
 //!
 //! The joints are handles. Every vertex is where the weighted mean of the handles' affine maps puts it; a file holds
-//! at most four joints a vertex (eight where asked for), so weights are [fitted anew](influences), and an affine map
-//! becomes a [chain](chain) of two nodes where one node does not do. What that costs is measured on the numbers of the
+//! at most four joints a vertex (eight where asked for), so weights are fitted anew, and an affine map
+//! becomes a chain of two nodes where one node does not do. What that costs is measured on the numbers of the
 //! file and handed back with it.
 
 mod chain;
