@@ -2,6 +2,7 @@
 
 mod input;
 mod inspect;
+mod keypoints;
 mod output;
 mod segment;
 mod transfer;
@@ -24,6 +25,8 @@ enum Command {
     Inspect(inspect::Inspect),
     /// Cut an animated mesh into near-rigid parts
     Segment(segment::Segment),
+    /// Choose the few points that govern a motion
+    Keypoints(keypoints::KeyPointsCommand),
     /// Make another mesh move like an animated one
     Transfer(transfer::Transfer),
     /// Make a creature
@@ -43,6 +46,7 @@ fn main() -> ExitCode {
     let result = match Arguments::parse().command {
         Command::Inspect(command) => command.run(),
         Command::Segment(command) => command.run(),
+        Command::Keypoints(command) => command.run(),
         Command::Transfer(command) => command.run(),
         Command::Zoo(command) => command.run(),
     };
