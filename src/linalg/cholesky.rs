@@ -22,12 +22,12 @@ pub enum Ordering {
     AsGiven,
 }
 
-/// The lower triangle of a symmetric n × n matrix, by columns.
+/// The upper triangle of a symmetric n × n matrix, by columns.
 #[derive(Clone, Debug, Default)]
-pub struct Lower {
+pub struct Upper {
     /// n + 1 places in `rows` and `values` where each column starts, and their length.
     pub starts: Vec<u32>,
-    /// Row numbers, rising within a column, none above the diagonal.
+    /// Row numbers, rising within a column, none below the diagonal.
     pub rows: Vec<u32>,
     /// The entries.
     pub values: Vec<f64>,
@@ -44,11 +44,11 @@ impl Cholesky {
     /// Factors an n × n matrix given by entries (row, column, value) of its lower triangle, in any order; equal places
     /// are summed. Entries above the diagonal are left out, so that a full symmetric list serves as well.
     pub fn new(n: usize, entries: &[(u32, u32, f64)]) -> Result<Self, NotPositiveDefinite> {
-        Self::of(&Lower::new(n, entries)?, Ordering::MinimumDegree)
+        Self::of(&Upper::new(n, entries)?, Ordering::MinimumDegree)
     }
 
     /// Factors a matrix given by columns.
-    pub fn of(matrix: &Lower, ordering: Ordering) -> Result<Self, NotPositiveDefinite> {
+    pub fn of(matrix: &Upper, ordering: Ordering) -> Result<Self, NotPositiveDefinite> {
         let n = matrix.starts.len().saturating_sub(1);
         if !matrix.values.iter().all(|v| v.is_finite()) {
             return Err(NotPositiveDefinite);
@@ -59,7 +59,7 @@ impl Cholesky {
             Ordering::AsGiven => SymmetricOrdering::Identity,
         };
         let parameters = CholeskySymbolicParams::default();
-        let symbolic = factorize_symbolic_cholesky(structure, Side::Lower, ordering, parameters);
+        let symbolic = factorize_symbolic_cholesky(structure, Side::Upper, ordering, parameters);
         let symbolic = symbolic.map_err(|_| NotPositiveDefinite)?;
         let mut values = vec![0.0; symbolic.len_val()];
         let scratch = symbolic.factorize_numeric_llt_scratch::<f64>(Par::Seq, Default::default());
@@ -68,7 +68,7 @@ impl Cholesky {
         let done = symbolic.factorize_numeric_llt(
             &mut values,
             entries,
-            Side::Lower,
+            Side::Upper,
             LltRegularization::default(),
             Par::Seq,
             MemStack::new(&mut buffer),
@@ -107,26 +107,26 @@ impl Cholesky {
     }
 }
 
-impl Lower {
-    /// Sorts entries (row, column, value) by columns and sums those of one place; those above the diagonal and outside
-    /// the matrix are left out.
+impl Upper {
+    /// The transpose of a lower triangle given by entries (row, column, value): those of one place are summed, those above
+    /// the diagonal and outside the matrix left out.
     fn new(n: usize, entries: &[(u32, u32, f64)]) -> Result<Self, NotPositiveDefinite> {
         let inside = |&&(row, column, _): &&(u32, u32, f64)| column <= row && (row as usize) < n;
         let mut sorted: Vec<(u32, u32, f64)> = entries.iter().filter(inside).copied().collect();
-        sorted.sort_by_key(|&(row, column, _)| (column, row));
+        sorted.sort_by_key(|&(row, column, _)| (row, column));
         if u32::try_from(sorted.len()).is_err() {
             return Err(NotPositiveDefinite);
         }
-        let mut lower = Self { starts: vec![0; n + 1], rows: Vec::new(), values: Vec::new() };
+        let mut upper = Self { starts: vec![0; n + 1], rows: Vec::new(), values: Vec::new() };
         for same in sorted.chunk_by(|a, b| (a.0, a.1) == (b.0, b.1)) {
-            lower.starts[same[0].1 as usize + 1] += 1;
-            lower.rows.push(same[0].0);
-            lower.values.push(same.iter().map(|entry| entry.2).sum());
+            upper.starts[same[0].0 as usize + 1] += 1;
+            upper.rows.push(same[0].1);
+            upper.values.push(same.iter().map(|entry| entry.2).sum());
         }
         for column in 0..n {
-            lower.starts[column + 1] += lower.starts[column];
+            upper.starts[column + 1] += upper.starts[column];
         }
-        Ok(lower)
+        Ok(upper)
     }
 }
 

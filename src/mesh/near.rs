@@ -79,13 +79,14 @@ pub fn contacts(graph: &DualGraph, centroids: &[DVec3], cell: &[u32], reach: f64
 }
 
 /// A balanced k-d tree over points, laid out in place.
-struct KdTree<'a> {
+pub(crate) struct KdTree<'a> {
     points: &'a [DVec3],
     order: Vec<u32>,
 }
 
 impl<'a> KdTree<'a> {
-    fn new(points: &'a [DVec3]) -> Self {
+    /// Sorts points into a tree.
+    pub(crate) fn new(points: &'a [DVec3]) -> Self {
         let mut order: Vec<u32> = (0..points.len() as u32).collect();
         let mut stack = vec![(0, points.len(), 0)];
         while let Some((from, to, axis)) = stack.pop() {
@@ -105,7 +106,7 @@ impl<'a> KdTree<'a> {
     }
 
     /// The nearest point closer than `limit` that is `wanted`, and its squared distance (`limit` is squared, too).
-    fn nearest(&self, to: DVec3, limit: f64, wanted: &dyn Fn(u32) -> bool) -> Option<(f64, u32)> {
+    pub(crate) fn nearest(&self, to: DVec3, limit: f64, wanted: &dyn Fn(u32) -> bool) -> Option<(f64, u32)> {
         let mut best = limit;
         let mut found = None;
         let mut stack = vec![(0, self.order.len(), 0, 0.0)];

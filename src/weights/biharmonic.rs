@@ -2,24 +2,23 @@
 
 use super::box_problem::{self, Column, State};
 use super::follow;
-use super::quadratic::Quadratic;
+use super::levels::{self, Level};
 use super::surface::Surface;
 use super::{Parameters, Weights, WeightsError};
-use crate::mesh::laplacian::Laplacian;
 use crate::warning::Warning;
 use glam::DVec3;
 
 /// The residual above which weights are said not to be optimal.
 const OPTIMAL: f64 = 1e-6;
 
+/// A handle that has moved to where its weight was at least so much starts from its former weights.
+const NEAR: f64 = 0.5;
+
 /// A mesh ready for the weights of any handles.
 #[derive(Debug)]
 pub struct Biharmonic {
-    surface: Surface,
-    quadratic: Quadratic,
-    /// The welded vertices of each piece.
-    members: Vec<Vec<u32>>,
-    mollified: usize,
+    /// The mesh and coarser copies of it, finest first; never empty.
+    levels: Vec<Level>,
 }
 
 impl Biharmonic {
@@ -33,18 +32,16 @@ impl Biharmonic {
     /// pose stay apart. Poses that do not have #V points are left out.
     pub fn with_poses(faces: &[[u32; 3]], positions: &[DVec3], poses: &[&[DVec3]]) -> Result<Self, WeightsError> {
         let surface = Surface::new(faces, positions, poses)?;
-        let laplacian = Laplacian::new(&surface.faces, &surface.positions);
-        let quadratic = Quadratic::new(&laplacian);
-        let mut members = vec![Vec::new(); surface.pieces];
-        for (v, &p) in surface.piece.iter().enumerate() {
-            members[p as usize].push(v as u32);
-        }
-        Ok(Self { surface, quadratic, members, mollified: laplacian.mollified })
+        Ok(Self { levels: levels::levels(surface) })
+    }
+
+    fn finest(&self) -> &Level {
+        &self.levels[0]
     }
 
     /// The number of vertices of the mesh as given.
     pub fn vertices(&self) -> usize {
-        self.surface.welded.len()
+        self.finest().surface.welded.len()
     }
 
     /// The weights of handles, which are vertices of the mesh as given.
@@ -61,7 +58,19 @@ impl Biharmonic {
         if found != expected {
             return Err(WeightsError::OtherMesh { found, expected });
         }
-        self.weights(handles, parameters)
+        let places = self.places(handles)?;
+        let old_places = self.places(&before.handles)?;
+        let old = |place: u32| old_places.iter().position(|&p| p == place).and_then(|i| before.raw.get(i));
+        let columns = (0..handles.len())
+            .map(|j| match old(places[j]) {
+                Some(column) => self.updated(column, &places, &old_places, j),
+                None => match self.moved(before, &places, &old_places, j) {
+                    Some(column) => self.carried(column, &places, j),
+                    None => self.column(&places, j),
+                },
+            })
+            .collect();
+        Ok(self.finish(handles, &places, columns, parameters))
     }
 
     /// The welded vertices of handles.
@@ -70,7 +79,7 @@ impl Biharmonic {
             return Err(WeightsError::NoHandles);
         }
         let vertices = self.vertices();
-        let place = |&handle: &u32| match self.surface.welded.get(handle as usize) {
+        let place = |&handle: &u32| match self.finest().surface.welded.get(handle as usize) {
             Some(&place) => Ok(place),
             None => Err(WeightsError::HandleOutOfRange { handle, vertices }),
         };
@@ -84,37 +93,83 @@ impl Biharmonic {
         }
     }
 
+    /// A column from nothing.
     fn column(&self, places: &[u32], handle: usize) -> Column {
-        let n = self.surface.positions.len();
-        let piece = self.surface.piece[places[handle] as usize];
-        let members = &self.members[piece as usize];
-        let mut states = vec![State::Fixed; n];
-        let mut weights = vec![0.0; n];
-        members.iter().for_each(|&v| states[v as usize] = State::Free);
-        places.iter().for_each(|&v| states[v as usize] = State::Fixed);
-        weights[places[handle] as usize] = 1.0;
-        box_problem::solve(&self.quadratic, members, Column { weights, states, energy: 0.0, residual: 0.0 })
+        let own = places[handle];
+        let start = levels::guess(&self.levels, places, own);
+        let fine = self.finest();
+        box_problem::solve(&fine.quadratic, fine.members_around(own), start)
     }
 
-    fn finish(&self, handles: &[u32], places: &[u32], raw: Vec<Column>, _parameters: &Parameters) -> Weights {
-        let rows = follow::rows(&self.surface, places, &raw);
+    /// The column of a handle that has stayed, while others came and went.
+    fn updated(&self, before: &Column, places: &[u32], old_places: &[u32], handle: usize) -> Column {
+        let members = self.finest().members_around(places[handle]);
+        let piece = self.finest().surface.piece[places[handle] as usize];
+        let here = |place: &&u32| self.finest().surface.piece[**place as usize] == piece;
+        let gone: Vec<u32> = old_places.iter().filter(here).filter(|p| !places.contains(p)).copied().collect();
+        let new: Vec<u32> = places.iter().filter(here).filter(|p| !old_places.contains(p)).copied().collect();
+        let mut column = before.clone();
+        // A weight that was held at zero by a handle is as well held there by its bound, unless it is drawn up.
+        let mut same = new.iter().all(|&v| before.weights[v as usize] == 0.0);
+        for &v in &gone {
+            let force = self.finest().quadratic.force(v as usize, &before.weights);
+            same &= force >= 0.0;
+            column.states[v as usize] = if force >= 0.0 { State::Low } else { State::Free };
+        }
+        for &v in &new {
+            column.states[v as usize] = State::Fixed;
+            column.weights[v as usize] = 0.0;
+        }
+        if same { column } else { box_problem::solve(&self.finest().quadratic, members, column) }
+    }
+
+    /// The column of the handle that stood where this one does in `before`, if this one is new, that one is gone, and it
+    /// has not gone far.
+    fn moved<'b>(&self, before: &'b Weights, places: &[u32], old_places: &[u32], handle: usize) -> Option<&'b Column> {
+        let (&from, &to) = (old_places.get(handle)?, places.get(handle)?);
+        let column = before.raw.get(handle)?;
+        let near = column.weights[to as usize] >= NEAR;
+        (places.len() == old_places.len() && !places.contains(&from) && near).then_some(column)
+    }
+
+    /// The column of a handle that has moved: nearly what it was.
+    fn carried(&self, before: &Column, places: &[u32], handle: usize) -> Column {
+        let members = self.finest().members_around(places[handle]);
+        let mut column = self.finest().open(places, places[handle]);
+        for &v in members {
+            let v = v as usize;
+            if column.states[v] != State::Fixed {
+                column.weights[v] = before.weights[v];
+                column.states[v] = if before.states[v] == State::Fixed { State::Free } else { before.states[v] };
+            }
+        }
+        column.factor = before.factor.clone();
+        box_problem::solve(&self.finest().quadratic, members, column)
+    }
+
+    fn finish(&self, handles: &[u32], places: &[u32], raw: Vec<Column>, parameters: &Parameters) -> Weights {
+        let rows = follow::rows(&self.finest().surface, &raw);
         let count = handles.len();
         let of_vertex = |&v: &u32| rows[v as usize * count..(v as usize + 1) * count].iter().copied();
-        let values = self.surface.welded.iter().flat_map(of_vertex).collect();
+        let values = self.finest().surface.welded.iter().flat_map(of_vertex).collect();
         let kkt_residual = raw.iter().map(|c| c.residual).fold(0.0, f64::max);
-        let energies = raw.iter().map(|c| c.energy * self.surface.radius.powi(2)).collect();
-        let warnings = self.warnings(places, kkt_residual);
+        let energies = raw.iter().map(|c| c.energy * self.finest().surface.radius.powi(2)).collect();
+        let mut warnings = self.warnings(places, kkt_residual);
+        if parameters.joint {
+            let message = "the joint form is not available yet; rows were divided by their sums instead";
+            warnings.push(Warning::new("no-joint-form", message));
+        }
         Weights { handles: handles.to_vec(), values, kkt_residual, energies, warnings, raw }
     }
 
     fn warnings(&self, places: &[u32], residual: f64) -> Vec<Warning> {
         let mut warnings = Vec::new();
-        if self.mollified > 0 {
-            let message = format!("{} degenerate triangles were given a little width", self.mollified);
+        if self.finest().mollified > 0 {
+            let message = format!("{} degenerate triangles were given a little width", self.finest().mollified);
             warnings.push(Warning::new("degenerate-faces", message));
         }
-        let mut held = vec![false; self.surface.pieces];
-        places.iter().for_each(|&v| held[self.surface.piece[v as usize] as usize] = true);
+        let mut held = vec![false; self.finest().surface.pieces];
+        places.iter().for_each(|&v| held[self.finest().surface.piece[v as usize] as usize] = true);
         let without = held.iter().filter(|held| !**held).count();
         if without > 0 {
             let message = format!("{without} pieces without a handle follow the nearest piece that has one");

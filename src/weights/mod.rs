@@ -16,11 +16,17 @@
 
 mod biharmonic;
 mod box_problem;
+mod descent;
+mod dissection;
 mod error;
+mod factor;
 mod follow;
+mod fronts;
+mod levels;
 mod parameters;
 mod quadratic;
 mod result;
+mod rings;
 mod surface;
 
 pub use biharmonic::Biharmonic;

@@ -1,6 +1,6 @@
 //! The energy wᵀ Q w with Q = L M⁻¹ L: the integral of the squared Laplacian.
 
-use crate::linalg::cholesky::Lower;
+use crate::linalg::cholesky::Upper;
 use crate::mesh::laplacian::Laplacian;
 
 /// A vertex with less area than this share of the mean is taken to have as much: the inverse enters Q.
@@ -32,24 +32,24 @@ impl Symmetric {
     }
 
     /// The entry of a row on the diagonal.
-    pub fn diagonal(&self, row: usize) -> f64 {
+    fn diagonal(&self, row: usize) -> f64 {
         self.row(row).find(|&(column, _)| column == row).map_or(0.0, |(_, value)| value)
     }
 
-    /// The lower triangle of the rows and columns listed in `members`; `place` is each one's place in that list, and
+    /// The upper triangle of the rows and columns listed in `members`, ascending; `place` is each one's place in that list, and
     /// `u32::MAX` for those not in it.
-    pub fn lower(&self, members: &[u32], place: &[u32]) -> Lower {
-        let mut lower = Lower { starts: vec![0], rows: Vec::new(), values: Vec::new() };
+    pub fn upper(&self, members: &[u32], place: &[u32]) -> Upper {
+        let mut upper = Upper { starts: vec![0], rows: Vec::new(), values: Vec::new() };
         for (column, &v) in members.iter().enumerate() {
             for (u, value) in self.row(v as usize) {
-                if place[u] != u32::MAX && place[u] as usize >= column {
-                    lower.rows.push(place[u]);
-                    lower.values.push(value);
+                if place[u] as usize <= column {
+                    upper.rows.push(place[u]);
+                    upper.values.push(value);
                 }
             }
-            lower.starts.push(lower.rows.len() as u32);
+            upper.starts.push(upper.rows.len() as u32);
         }
-        lower
+        upper
     }
 }
 
@@ -62,6 +62,8 @@ pub struct Quadratic {
     pub inverse_mass: Vec<f64>,
     /// Q = L M⁻¹ L.
     pub matrix: Symmetric,
+    /// The diagonal of Q.
+    pub diagonal: Vec<f64>,
 }
 
 impl Quadratic {
@@ -74,19 +76,31 @@ impl Quadratic {
         let inverse_mass: Vec<f64> = laplacian.mass.iter().map(invert).collect();
         let laplacian = stiffness(laplacian, n);
         let matrix = square(&laplacian, &inverse_mass);
-        Self { laplacian, inverse_mass, matrix }
+        let diagonal = (0..n).map(|v| matrix.diagonal(v)).collect();
+        Self { laplacian, inverse_mass, matrix, diagonal }
     }
 
-    /// Q w, from L twice, which loses fewer digits than from Q.
-    pub fn gradient(&self, w: &[f64]) -> Vec<f64> {
-        let n = w.len();
-        let inner: Vec<f64> = (0..n).map(|v| self.inverse_mass[v] * self.laplacian.times(v, w)).collect();
-        (0..n).map(|v| self.laplacian.times(v, &inner)).collect()
+    /// Q w on a piece with the vertices `members`, into `gradient`; from L twice, which loses fewer digits than from Q.
+    /// `inner` is room for M⁻¹ L w. All are as long as the mesh has vertices.
+    pub fn gradient(&self, members: &[u32], w: &[f64], inner: &mut [f64], gradient: &mut [f64]) {
+        for &v in members {
+            inner[v as usize] = self.inverse_mass[v as usize] * self.laplacian.times(v as usize, w);
+        }
+        for &v in members {
+            gradient[v as usize] = self.laplacian.times(v as usize, inner);
+        }
     }
 
-    /// wᵀ Q w.
-    pub fn energy(&self, w: &[f64]) -> f64 {
-        (0..w.len()).map(|v| self.inverse_mass[v] * self.laplacian.times(v, w).powi(2)).sum()
+    /// (Q w) at one vertex.
+    pub fn force(&self, v: usize, w: &[f64]) -> f64 {
+        let inner = |u: usize| self.inverse_mass[u] * self.laplacian.times(u, w);
+        self.laplacian.row(v).map(|(u, value)| value * inner(u)).sum()
+    }
+
+    /// wᵀ Q w over a piece with the vertices `members`.
+    pub fn energy(&self, members: &[u32], w: &[f64]) -> f64 {
+        let at = |&v: &u32| self.inverse_mass[v as usize] * self.laplacian.times(v as usize, w).powi(2);
+        members.iter().map(at).sum()
     }
 }
 

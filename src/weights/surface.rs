@@ -1,6 +1,7 @@
 //! The mesh as the weights see it: vertices at one place made one, in pieces, at unit size.
 
-use super::WeightsError;
+use super::rings::Rings;
+use super::{WeightsError, dissection};
 use crate::mesh::ball::unit_ball;
 use crate::mesh::weld;
 use glam::DVec3;
@@ -17,6 +18,8 @@ pub struct Surface {
     pub positions: Vec<DVec3>,
     /// Faces of the welded vertices, none of which names a vertex twice.
     pub faces: Vec<[u32; 3]>,
+    /// The neighbours of the welded vertices.
+    pub rings: Rings,
     /// The piece of each welded vertex.
     pub piece: Vec<u32>,
     /// The number of pieces.
@@ -47,8 +50,27 @@ impl Surface {
         let positions: Vec<DVec3> = kept.iter().map(|&v| scaled[v as usize]).collect();
         let renumbered = faces.iter().map(|face| face.map(|v| welded[v as usize]));
         let faces: Vec<[u32; 3]> = renumbered.filter(|&[a, b, c]| a != b && b != c && c != a).collect();
+        Ok(Self::dissected(welded, positions, faces, radius / scale))
+    }
+}
+
+impl Surface {
+    /// The surface with its vertices renumbered for elimination.
+    pub fn dissected(welded: Vec<u32>, positions: Vec<DVec3>, faces: Vec<[u32; 3]>, radius: f64) -> Self {
+        let order = dissection::order(&Rings::new(&faces, positions.len()), &positions);
+        let mut number = vec![0; order.len()];
+        order.iter().enumerate().for_each(|(new, &old)| number[old as usize] = new as u32);
+        let faces: Vec<[u32; 3]> = faces.iter().map(|face| face.map(|v| number[v as usize])).collect();
         let (piece, pieces) = pieces(&faces, positions.len());
-        Ok(Self { welded, positions, faces, piece, pieces, radius: radius / scale })
+        Self {
+            welded: welded.iter().map(|&v| number[v as usize]).collect(),
+            positions: order.iter().map(|&v| positions[v as usize]).collect(),
+            rings: Rings::new(&faces, order.len()),
+            faces,
+            piece,
+            pieces,
+            radius,
+        }
     }
 }
 

@@ -71,3 +71,21 @@ fn array<R: Read + Seek>(archive: &mut npyz::npz::NpzArchive<R>, name: &str) -> 
     }
     (rows, shape)
 }
+
+/// A list of points.
+#[allow(dead_code)]
+pub fn points(path: &Path, name: &str) -> Vec<DVec3> {
+    values(path, name).chunks_exact(3).map(DVec3::from_slice).collect()
+}
+
+/// An array of vertex numbers, row by row.
+#[allow(dead_code)]
+pub fn numbers(path: &Path, name: &str) -> Vec<u32> {
+    values(path, name).into_iter().map(|x| x as u32).collect()
+}
+
+/// An array, row by row.
+#[allow(dead_code)]
+pub fn values(path: &Path, name: &str) -> Vec<f64> {
+    array(&mut npyz::npz::NpzArchive::open(path).expect("a NumPy archive"), name).0
+}

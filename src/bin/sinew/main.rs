@@ -6,6 +6,7 @@ mod keypoints;
 mod output;
 mod segment;
 mod transfer;
+mod weights;
 mod zoo;
 
 use clap::{Parser, Subcommand};
@@ -29,6 +30,8 @@ enum Command {
     Keypoints(keypoints::KeyPointsCommand),
     /// Make another mesh move like an animated one
     Transfer(transfer::Transfer),
+    /// Bounded biharmonic weights of given vertices
+    Weights(weights::WeightsCommand),
     /// Make a creature
     Zoo(zoo::Zoo),
 }
@@ -48,6 +51,7 @@ fn main() -> ExitCode {
         Command::Segment(command) => command.run(),
         Command::Keypoints(command) => command.run(),
         Command::Transfer(command) => command.run(),
+        Command::Weights(command) => command.run(),
         Command::Zoo(command) => command.run(),
     };
     match result {

@@ -1,0 +1,72 @@
+//! Following the edges of the set of free weights.
+//!
+//! Far from the handle the edge of that set moves by a ring of vertices a round, while the other weights hardly change any
+//! more. So rounds are played in the neighbourhood of what was corrected last, everything else being held, until nothing
+//! there is left to correct; then the whole is solved again.
+
+use super::box_problem::{Column, Problem, State};
+use super::factor::Solver;
+
+/// Rounds in neighbourhoods between two on the whole.
+const ROUNDS: usize = 40;
+
+/// A neighbourhood is everything within so many steps of Q, two edges each, of what was corrected.
+const REACH: usize = 1;
+
+/// Neighbourhoods with more than this share of the piece are no better than the whole.
+const SHARE: usize = 2;
+
+/// Corrects states near `corrected` vertices further.
+pub fn follow(problem: &mut Problem, column: &mut Column, mut corrected: Vec<u32>) {
+    let mut solver = Solver::new(problem.quadratic, None);
+    for _ in 0..ROUNDS {
+        for &v in &corrected {
+            match column.states[v as usize] {
+                State::Low => column.weights[v as usize] = 0.0,
+                State::High => column.weights[v as usize] = 1.0,
+                State::Free | State::Fixed => {}
+            }
+        }
+        let window = around(problem, corrected, REACH);
+        if SHARE * window.len() > problem.members.len() {
+            return;
+        }
+        measure(problem, column, &window);
+        let free: Vec<u32> = window.iter().filter(|v| column.states[**v as usize] == State::Free).copied().collect();
+        let Some(step) = solver.step(&free, &problem.forces) else { return };
+        free.iter().zip(&step).for_each(|(&v, &d)| column.weights[v as usize] += d);
+        let felt = around(problem, window, 1);
+        measure(problem, column, &felt);
+        corrected = problem.correct(column, &felt);
+        if corrected.is_empty() {
+            return;
+        }
+    }
+}
+
+/// Forces at some vertices.
+fn measure(problem: &mut Problem, column: &Column, vertices: &[u32]) {
+    for &v in vertices {
+        problem.forces[v as usize] = problem.quadratic.matrix.times(v as usize, &column.weights);
+    }
+}
+
+/// A set with everything within `reach` steps of Q, ascending.
+fn around(problem: &mut Problem, mut set: Vec<u32>, reach: usize) -> Vec<u32> {
+    set.iter().for_each(|&v| problem.marks[v as usize] = true);
+    let mut from = 0;
+    for _ in 0..reach {
+        let end = set.len();
+        for i in from..end {
+            for (u, _) in problem.quadratic.matrix.row(set[i] as usize) {
+                if !std::mem::replace(&mut problem.marks[u], true) {
+                    set.push(u as u32);
+                }
+            }
+        }
+        from = end;
+    }
+    set.iter().for_each(|&v| problem.marks[v as usize] = false);
+    set.sort_unstable();
+    set
+}
