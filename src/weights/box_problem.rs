@@ -11,14 +11,14 @@ use super::quadratic::Quadratic;
 use super::{descent, fronts};
 
 /// Rounds of guessing, at most, and without fewer corrections than ever before.
-const ROUNDS: usize = 80;
-const PATIENCE: usize = 12;
+const ROUNDS: usize = 250;
+const PATIENCE: usize = 40;
 
 /// Rounds of making forces on free weights vanish further.
 const REFINEMENTS: usize = 3;
 
 /// How far a weight may leave the range and still count as within.
-const BOUND: f64 = 1e-11;
+const BOUND: f64 = 1e-14;
 
 /// Which force counts as none, in shares of the largest.
 const FORCE: f64 = 7e-7;
