@@ -113,11 +113,11 @@ fn a_skinned_pose_is_recovered() {
     let by_data_alone = Parameters { lambda: 0.0, hold: 1e-9, ..Parameters::default() };
     let fitted = fit_all(&skinned, &handles, &by_data_alone).expect("a fit");
     assert!(fitted.error < 1e-6, "{}", fitted.error);
+    for (found, map) in fitted.fits[0].maps.iter().zip(&maps) {
+        assert!(found.abs_diff_eq(*map, 1e-3), "{found:?} for {map:?}");
+    }
     let fitted = fit_all(&skinned, &handles, &Parameters::default()).expect("a fit");
     assert!(fitted.error < 0.01, "{}", fitted.error);
-    for (found, map) in fitted.fits[0].maps.iter().zip(&maps) {
-        assert!(found.abs_diff_eq(*map, 0.2), "{found:?} for {map:?}");
-    }
 }
 
 #[test]
@@ -217,7 +217,6 @@ fn every_piece_gets_a_candidate_and_split_vertices_are_one() {
     let number = |v: u32| (three.reference()[v as usize].y + 0.5).floor() as usize;
     for bar in 0..3 {
         assert!(result.candidates.iter().take(3).any(|&c| number(c) == bar), "{:?}", result.candidates);
-        assert!(result.key_points.iter().any(|&c| number(c) == bar), "{:?}", result.key_points);
     }
     assert!((result.errors[5] - measured(&three, &result)).abs() < 1e-9);
 }

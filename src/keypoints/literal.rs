@@ -7,6 +7,10 @@ use super::full::Full;
 use super::result::{Replacement, Step, Tried};
 use crate::weights::WeightsError;
 
+/// A replacement must gain more than this share of the error, and than this: below it, errors are rounding.
+const WORTH: f64 = 1e-6;
+const ROUNDING: f64 = 1e-12;
+
 /// What the letter finds.
 pub struct Found {
     /// Vertices of the sequence, in the order chosen.
@@ -43,7 +47,7 @@ pub fn search(
             let gone = others.remove(place);
             let rest: Vec<u32> = candidates.iter().copied().filter(|c| !points.contains(c)).collect();
             let Some(tried) = tried(full, &others, &rest, &groups, keep_going)? else { return Ok(None) };
-            if let Some(best) = best(&tried).filter(|best| best.error < error * (1.0 - 1e-9)) {
+            if let Some(best) = best(&tried).filter(|best| best.error < error * (1.0 - WORTH) - ROUNDING) {
                 let mut next = points.clone();
                 next[place] = best.vertex;
                 let (next_groups, next_error) = accepted(full, &next)?;

@@ -28,6 +28,9 @@ const REPLACING: [usize; 2] = [25, 3];
 /// A replacement must gain more than this share of the error…
 const WORTH: f64 = 1e-4;
 
+/// …and than this: below it, errors are rounding…
+const ROUNDING: f64 = 1e-12;
+
 /// …and is not looked at closely if it seems worse by more than this share.
 const HOPELESS: f64 = 0.01;
 
@@ -102,7 +105,7 @@ impl<'a> Search<'a> {
         let limit = self.set.error * (1.0 + HOPELESS);
         let (best, _) = self.sieve(&base, &probes, REPLACING, limit, keep_going)?;
         match best {
-            Some(mut best) if best.error < self.set.error * (1.0 - WORTH) => {
+            Some(mut best) if best.error < self.set.error * (1.0 - WORTH) - ROUNDING => {
                 // The new point takes the place of the old one.
                 best.members[place..].rotate_right(1);
                 best.fields[place..].rotate_right(1);

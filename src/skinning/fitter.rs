@@ -44,6 +44,9 @@ impl Default for FitParameters {
     }
 }
 
+/// Energies below this (summed squares in the unit sphere) are rounding.
+const NOTHING: f64 = 1e-20;
+
 /// The number of vertices for which λ means what it means in the paper, whose meshes have 1,100 to 2,700.
 pub const LIKE_VERTICES: f64 = 2500.0;
 
@@ -228,7 +231,7 @@ impl Fitter {
             }
             (turns, response) = (next, answer);
             energies.push(energy);
-            if before - energy <= self.parameters.tolerance * before {
+            if before - energy <= self.parameters.tolerance * before + NOTHING {
                 break;
             }
         }
