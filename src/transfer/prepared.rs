@@ -236,12 +236,12 @@ impl Prepared {
             .zip(points)
             .map(|(pair, point)| Pin { vertex: target.place[pair.target as usize], point: point.0 })
             .collect();
+        // The shape that the bent target keeps as far as it can is that of the target with its points where they belong:
+        // proportions differ more often than poses do.
+        let shape = splined(&rest, &rest, &pins);
         let quick = last.is_some();
-        let from = last.unwrap_or_else(|| rest.clone());
-        let missing = |pin: &Pin| (rest[pin.vertex as usize], pin.point - from[pin.vertex as usize]);
-        let spline = Spline::new(&pins.iter().map(missing).collect::<Vec<_>>());
-        let start = from.iter().zip(&rest).map(|(&p, &r)| p + spline.at(r)).collect();
-        self.registration.bend((&self.source, &self.ground), target, &rest, start, &pins, quick)
+        let start = last.map_or_else(|| shape.clone(), |last| splined(&rest, &last, &pins));
+        self.registration.bend((&self.source, &self.ground), target, &shape, start, &pins, quick)
     }
 
     fn by_bones(&self, alignment: Alignment, bent: &[DVec3]) -> Skin {
@@ -335,6 +335,13 @@ impl Prepared {
             maps,
         }
     }
+}
+
+/// Points displaced smoothly so that pinned ones come to lie where they belong; the spline is over the points at `rest`.
+fn splined(rest: &[DVec3], points: &[DVec3], pins: &[Pin]) -> Vec<DVec3> {
+    let missing = |pin: &Pin| (rest[pin.vertex as usize], pin.point - points[pin.vertex as usize]);
+    let spline = Spline::new(&pins.iter().map(missing).collect::<Vec<_>>());
+    points.iter().zip(rest).map(|(&p, &r)| p + spline.at(r)).collect()
 }
 
 fn count(pairs: usize) -> String {

@@ -16,8 +16,6 @@ use glam::{DMat3, DVec3};
 const PULLS: [f64; 4] = [9.0, 90.0, 900.0, 9000.0];
 /// Solves with each.
 const ROUNDS: usize = 2;
-/// Solves without nearest points, which let the target bend to the pairs.
-const WARM: usize = 3;
 /// What a difference of unit normals counts, as a length in the unit ball.
 const NORMAL: f64 = 0.2;
 /// Cosine between normals below which a nearest point is none.
@@ -102,7 +100,7 @@ impl Registration {
 
     /// Bends the target onto the source: #N positions of its vertices near the source's surface.
     ///
-    /// `rest` is the target where the similarity alone puts it, `start` where it is thought to end. `quick` is for a start
+    /// `rest` has the shape that is kept, `start` is where the target is thought to end. `quick` is for a start
     /// that was a result before: only the last rounds are done.
     pub fn bend(
         &self,
@@ -114,12 +112,6 @@ impl Registration {
         quick: bool,
     ) -> Vec<DVec3> {
         let mut at = start;
-        if !quick {
-            for _ in 0..WARM {
-                let goal = at.clone();
-                self.solve(0, target, rest, &mut at, &goal);
-            }
-        }
         let first = if quick { PULLS.len() - 2 } else { 0 };
         for level in first..PULLS.len() {
             for _ in 0..if quick { 1 } else { ROUNDS } {
