@@ -3,6 +3,7 @@
 mod input;
 mod inspect;
 mod output;
+mod propose;
 mod segment;
 mod zoo;
 
@@ -23,6 +24,8 @@ enum Command {
     Inspect(inspect::Inspect),
     /// Cut an animated mesh into near-rigid parts
     Segment(segment::Segment),
+    /// Find where points of one mesh lie on another
+    Propose(propose::Propose),
     /// Make a creature
     Zoo(zoo::Zoo),
 }
@@ -40,6 +43,7 @@ fn main() -> ExitCode {
     let result = match Arguments::parse().command {
         Command::Inspect(command) => command.run(),
         Command::Segment(command) => command.run(),
+        Command::Propose(command) => command.run(),
         Command::Zoo(command) => command.run(),
     };
     match result {
