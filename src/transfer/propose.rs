@@ -144,7 +144,8 @@ impl Proposer {
         let company = company.min(self.source.len());
         let vertices: Vec<u32> = self.source.samples[..company].iter().chain(points).copied().collect();
         let source = &self.source;
-        let rows: Vec<Vec<f32>> = vertices.iter().map(|&v| source.from_reading(&source.readings[v as usize])).collect();
+        let rows: Vec<Vec<f32>> =
+            vertices.iter().map(|&v| source.distances_from(&source.readings[v as usize])).collect();
         let mut distances = Vec::with_capacity(vertices.len() * vertices.len());
         for row in &rows {
             let far = |&v: &u32| source.readings[v as usize].iter().map(|&(s, w)| w * row[s as usize]).sum::<f32>();
@@ -166,7 +167,7 @@ impl Proposer {
         let reading = &self.target.readings[vertex as usize];
         Target {
             place: self.target.points[vertex as usize],
-            distances: self.target.from_reading(reading),
+            distances: self.target.distances_from(reading),
             sample: self.target.cell[vertex as usize],
         }
     }

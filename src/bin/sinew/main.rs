@@ -4,6 +4,7 @@ mod input;
 mod inspect;
 mod keypoints;
 mod output;
+mod propose;
 mod segment;
 mod transfer;
 mod weights;
@@ -32,6 +33,8 @@ enum Command {
     Transfer(transfer::Transfer),
     /// Bounded biharmonic weights of given vertices
     Weights(weights::WeightsCommand),
+    /// Find where points of one mesh lie on another
+    Propose(propose::Propose),
     /// Make a creature
     Zoo(zoo::Zoo),
 }
@@ -52,6 +55,7 @@ fn main() -> ExitCode {
         Command::Keypoints(command) => command.run(),
         Command::Transfer(command) => command.run(),
         Command::Weights(command) => command.run(),
+        Command::Propose(command) => command.run(),
         Command::Zoo(command) => command.run(),
     };
     match result {

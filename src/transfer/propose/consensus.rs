@@ -20,6 +20,16 @@ const LOCAL_SCALE: [f64; 2] = [0.8, 1.25];
 /// How much more a given place counts than a found one.
 const GIVEN: f64 = 3.0;
 
+/// How listening falls with the squared distance along the surface.
+const FALL: f64 = 1.5;
+
+/// How much faster it falls where a place is foretold: a limb that is held another way moves with what is nearest alone.
+const STEEPER: f64 = 1.5;
+
+/// Squared distance from the foretold place beyond which it no longer matters how far: limbs are held in many ways, and
+/// what is foretold for one from the trunk says nothing.
+const FAR: f64 = 0.02;
+
 /// A point of the source surface.
 #[derive(Clone, Debug)]
 pub struct Point {
@@ -154,7 +164,7 @@ impl<'a> Consensus<'a> {
     pub fn column(&self, i: usize) -> Option<&[f32]> {
         match &self.points[i].given {
             Some(given) => Some(&given.distances),
-            None => self.at[i].map(|s| self.target.from(s)),
+            None => self.at[i].map(|s| self.target.row(s)),
         }
     }
 
@@ -166,7 +176,7 @@ impl<'a> Consensus<'a> {
             let far = f64::from(row[j]);
             let point = &self.points[j];
             let given = if point.given.is_some() { GIVEN } else { point.weight };
-            given * self.trust[j] / (far * far + rules.reach * rules.reach)
+            given * self.trust[j] / (far * far + rules.reach * rules.reach).powf(FALL)
         };
         let others = (0..n).filter(|&j| j != i && self.at[j].is_some());
         let mut heard: Vec<(u32, f64)> = others.map(|j| (j as u32, weight(j))).collect();
@@ -180,8 +190,10 @@ impl<'a> Consensus<'a> {
             return None;
         }
         heard.iter_mut().for_each(|h| h.1 /= total);
-        let pairs =
-            heard.iter().filter_map(|&(j, w)| Some((w, self.points[j as usize].place, self.place(j as usize)?)));
+        let near = |j: u32, w: f64| w / (f64::from(row[j as usize]).powi(2) + rules.reach * rules.reach).powf(STEEPER);
+        let pairs = heard
+            .iter()
+            .filter_map(|&(j, w)| Some((near(j, w), self.points[j as usize].place, self.place(j as usize)?)));
         let motion = Similarity::fit(pairs);
         Some(Voice {
             scale: self.scale(row, &heard, i),
@@ -265,7 +277,7 @@ impl<'a> Consensus<'a> {
 
 /// What it costs to be away from where the others would put a point, and to face another way.
 fn away(voice: &Voice, place: DVec3, normal: DVec3, rules: &Rules) -> f64 {
-    rules.place * place.distance_squared(voice.place) + 0.5 * rules.facing * (1.0 - voice.normal.dot(normal))
+    rules.place * place.distance_squared(voice.place).min(FAR) + 0.5 * rules.facing * (1.0 - voice.normal.dot(normal))
 }
 
 /// The lowest finite value and where it is; of equals, the first.

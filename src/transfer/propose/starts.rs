@@ -15,10 +15,10 @@ const STRETCH: [f64; 2] = [0.6, 1.6];
 /// How much better another turn than the given one must be.
 const CLEARLY: f64 = 0.8;
 
-/// A turn of the source, and whether it is stretched to the target's box.
+/// How the source is laid over the target.
 #[derive(Clone, Copy, Debug)]
 pub struct Orientation {
-    /// A linear map.
+    /// A turn, then perhaps a stretch to the target's box.
     pub map: DMat3,
 }
 
@@ -68,18 +68,6 @@ pub(super) fn best(proposer: &Proposer, crowd: &Crowd) -> Start {
     for start in &starts {
         for schedule in schedules {
             let outcome = run(&proposer.target, crowd, start.clone(), schedule);
-            if std::env::var("TRACE").is_ok() {
-                eprintln!(
-                    "start badness {} {:?}",
-                    outcome.badness,
-                    start
-                        .iter()
-                        .enumerate()
-                        .filter(|_| start.iter().any(|x| x.is_none()))
-                        .filter_map(|(i, s)| Some((i, (*s)?)))
-                        .collect::<Vec<_>>()
-                );
-            }
             if best.as_ref().is_none_or(|b| outcome.badness < b.badness) {
                 best = Some(outcome);
             }

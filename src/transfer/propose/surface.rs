@@ -81,7 +81,7 @@ impl Surface {
     /// The mean distance between the first samples.
     fn typical(&self) -> f32 {
         let among = FIRST.min(self.len());
-        let sum: f32 = (0..among as u32).flat_map(|s| &self.from(s)[..among]).sum();
+        let sum: f32 = (0..among as u32).flat_map(|s| &self.row(s)[..among]).sum();
         if among > 1 { sum / (among * (among - 1)) as f32 } else { TYPICAL as f32 }
     }
 
@@ -97,14 +97,14 @@ impl Surface {
     }
 
     /// Distances of all samples from one of them.
-    pub fn from(&self, sample: u32) -> &[f32] {
+    pub fn row(&self, sample: u32) -> &[f32] {
         let n = self.len();
         &self.distances[sample as usize * n..(sample as usize + 1) * n]
     }
 
     /// Distances of all samples from a place between samples.
-    pub fn from_reading(&self, reading: &Reading) -> Vec<f32> {
-        let rows = reading.map(|(sample, _)| self.from(sample));
+    pub fn distances_from(&self, reading: &Reading) -> Vec<f32> {
+        let rows = reading.map(|(sample, _)| self.row(sample));
         let [a, b, c] = reading.map(|(_, w)| w);
         (0..self.len()).map(|i| a * rows[0][i] + b * rows[1][i] + c * rows[2][i]).collect()
     }

@@ -26,12 +26,12 @@ const PLACE: f64 = 0.2;
 /// Samples among the first `among` that are tips, in the order of the samples.
 pub fn tips(surface: &Surface, among: usize) -> Vec<u32> {
     let among = among.min(surface.len());
-    let far = |s: u32| surface.from(s)[..among].iter().sum::<f32>();
+    let far = |s: u32| surface.row(s)[..among].iter().sum::<f32>();
     let far: Vec<f32> = (0..among as u32).map(far).collect();
     let typical = far.iter().sum::<f32>() / among.max(1) as f32;
     let tip = |&s: &u32| {
         let own = far[s as usize];
-        let row = surface.from(s);
+        let row = surface.row(s);
         own > typical && (0..among).all(|o| o == s as usize || row[o] > AROUND || (far[o], o) < (own, s as usize))
     };
     (0..among as u32).filter(tip).take(MOST).collect()
@@ -54,7 +54,7 @@ pub fn assign(source: &Surface, target: &Surface, crowd: &Crowd, map: DMat3) -> 
         for (cost, partners) in &beam {
             next.push((cost + ALONE, [partners.as_slice(), &[None]].concat()));
             for &other in others.iter().filter(|o| !partners.contains(&Some(**o))) {
-                let before = own.iter().zip(partners).filter_map(|(&s, p)| Some((s, target.from((*p)?))));
+                let before = own.iter().zip(partners).filter_map(|(&s, p)| Some((s, target.row((*p)?))));
                 let pairs =
                     before.chain(fixed.iter().copied()).map(|(s, to)| (row(tip)[s as usize], to[other as usize]));
                 let off = mean_square(pairs);
