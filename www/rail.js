@@ -17,7 +17,8 @@ export function rail(host, app) {
       else button.removeAttribute('aria-current');
     }
   };
-  app.on('step source result', update);
+  app.on('step source result doc motion', update);
+  app.on('step', () => items.find(({ step }) => step.id === app.step)?.button.scrollIntoView({ block: 'nearest', inline: 'center' }));
   show(host, h('ol', {}, ...items.map(({ button }) => h('li', {}, button))));
   update();
 }

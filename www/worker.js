@@ -2,6 +2,7 @@
  * The worker: starts the engine from the compiled module that the page sends first, then answers its messages,
  * one at a time and in order. See engine.js for the messages.
  */
+import * as fake from './fake.js';
 import init, { Engine } from '../pkg/worker.js';
 
 /** Progress is told at most this often, in milliseconds. */
@@ -13,10 +14,13 @@ const operations = {
   start: async ({ module }) => {
     await init({ module_or_path: module });
     engine = new Engine();
-    return Engine.about();
+    return { ...Engine.about(), keypoints: { candidates: 100, error: 0.03, points: null, stop: 'error', literal: false, lambda: 0.5, 'gamma-rotation': 1, 'gamma-shear': 0.1 }, transfer: { method: 'biharmonic' } };
   },
-  open: ({ files, options }) => engine.open(files, options),
-  zoo: ({ recipe }) => engine.zoo(recipe),
+  open: ({ files, options }) => fake.note('source')(engine.open(files, options)),
+  zoo: ({ recipe }) => fake.note('source')(engine.zoo(recipe)),
+  target: ({ recipe, files, options }) => { const r = recipe ? engine.zoo(recipe) : engine.open(files, options); return fake.note('target')(r); },
+  restore_target: ({ kept }) => fake.note('target')(kept) && undefined,
+  ...fake.operations,
   restore: ({ kept }) => engine.restore(kept),
   segment: ({ parameters }, progress) => engine.segment(parameters, progress),
   parts: ({ parameters, parts }, progress) => engine.parts(parameters, parts, progress),
