@@ -6,5 +6,6 @@ mod harness;
 mod looking;
 mod opening;
 mod phone;
+mod players;
 mod source;
 mod watching;

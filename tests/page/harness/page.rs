@@ -43,6 +43,11 @@ impl Page {
         let address = std::env::var("SINEW_PAGE").expect(
             "SINEW_PAGE is not set: these tests need the built page on a server; `cargo xtask test` does all that",
         );
+        Self::open_at(address, backend, screen, tail)
+    }
+
+    /// Opens another page: `tail` after the given address.
+    pub fn open_at(address: String, backend: Backend, screen: Screen, tail: &str) -> Self {
         let mut browsers = backend.browser();
         let browser = browsers.get(backend);
         let target = text(&browser.call("Target.createTarget", json!({ "url": "about:blank" }), None)["targetId"]);
