@@ -1,5 +1,7 @@
 //! Small numerical tools: polar decomposition, rigid fits, sparse solves.
 
+#[cfg(feature = "solvers")]
+pub mod cholesky;
 pub mod conjugate_gradient;
 pub mod jacobi;
 pub mod polar;

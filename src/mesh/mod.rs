@@ -1,8 +1,10 @@
 //! What the algorithms need to know of a triangle mesh: adjacency, pieces, areas, welding.
 
+pub mod ball;
 pub mod dual;
 pub mod face;
 mod groups;
+pub mod laplacian;
 pub mod near;
 pub mod pieces;
 pub mod weld;

@@ -1,0 +1,60 @@
+//! Candidates for key points: farthest point sampling (§3.1).
+//!
+//! Yuval Eldar, Michael Lindenbaum, Moshe Porat, Yehoshua Y. Zeevi. The farthest point strategy for progressive image
+//! sampling. IEEE Transactions on Image Processing 6(9), 1997.
+
+use super::geodesic::Graph;
+use super::surface::Surface;
+use glam::DVec3;
+
+/// Candidates in the order in which they are found, as vertices of the surface.
+///
+/// The first is the vertex farthest from the middle of the largest piece; for `seed` other than 0, another vertex of it.
+/// Then every piece gets one, the largest first, and then whatever vertex is farthest along the surface. If pieces alone
+/// take more than half of `count`, more candidates are added, so that the largest still get half of `count` by distance.
+pub fn candidates(surface: &Surface, graph: &Graph, count: usize, seed: u64) -> Vec<u32> {
+    let pieces = &surface.pieces;
+    let mut distance = vec![f64::INFINITY; surface.reference.len()];
+    let mut found = Vec::new();
+    for (number, piece) in pieces.iter().take(count).enumerate() {
+        let start = if number == 0 && seed != 0 {
+            piece[(scrambled(seed) % piece.len() as u64) as usize]
+        } else {
+            farthest_from_the_middle(piece, &surface.reference)
+        };
+        graph.lower(&mut distance, start);
+        found.push(start);
+    }
+    let wanted = count.max((count / 2 + found.len()).min(count + count / 2));
+    while found.len() < wanted {
+        let farther = |best: Option<(f64, u32)>, &v: &u32| {
+            let d = distance[v as usize];
+            if d.is_finite() && best.is_none_or(|b| d > b.0) { Some((d, v)) } else { best }
+        };
+        match surface.used.iter().fold(None, farther) {
+            Some((d, v)) if d > 0.0 => {
+                graph.lower(&mut distance, v);
+                found.push(v);
+            }
+            _ => break,
+        }
+    }
+    found
+}
+
+fn farthest_from_the_middle(piece: &[u32], points: &[DVec3]) -> u32 {
+    let middle = piece.iter().map(|&v| points[v as usize]).sum::<DVec3>() / piece.len().max(1) as f64;
+    let farther = |best: (f64, u32), &v: &u32| {
+        let d = points[v as usize].distance_squared(middle);
+        if d > best.0 { (d, v) } else { best }
+    };
+    piece.iter().fold((-1.0, piece.first().copied().unwrap_or(0)), farther).1
+}
+
+/// A number that tells nothing of its neighbours (the finaliser of splitmix64).
+fn scrambled(seed: u64) -> u64 {
+    let mut z = seed.wrapping_mul(0x9e37_79b9_7f4a_7c15);
+    z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
+    z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
+    z ^ (z >> 31)
+}

@@ -1,0 +1,230 @@
+//! A coarse mesh on some of the vertices of a fine one.
+//!
+//! Edges collapse onto one of their ends, cheapest first: Michael Garland, Paul S. Heckbert. *Surface simplification
+//! using quadric error metrics*. SIGGRAPH 1997, with the link condition of Tamal K. Dey, Herbert Edelsbrunner, Sumanta
+//! Guha, Dmitry V. Nekhayev. *Topology preserving edge contraction*. 1999. What cannot collapse without changing the
+//! topology stays, so that thin limbs stay limbs.
+
+use glam::{DMat3, DVec3};
+use std::cmp::Reverse;
+use std::collections::BinaryHeap;
+
+/// Share of squared edge lengths times area in the price of a collapse: keeps triangles of one size where all is flat.
+const EVEN: f64 = 1e-3;
+
+/// A coarse mesh.
+pub struct Coarse {
+    /// Triples of vertices of the *fine* mesh.
+    pub faces: Vec<[u32; 3]>,
+    /// For each vertex of the fine mesh, the vertex that it collapsed onto: itself if it stayed.
+    pub onto: Vec<u32>,
+}
+
+/// Sum of squared distances to planes, `x·A x − 2 b·x + c`.
+#[derive(Clone, Copy)]
+struct Quadric {
+    a: DMat3,
+    b: DVec3,
+    c: f64,
+    area: f64,
+}
+
+impl Quadric {
+    const NONE: Self = Self { a: DMat3::ZERO, b: DVec3::ZERO, c: 0.0, area: 0.0 };
+
+    fn plane(normal: DVec3, point: DVec3, weight: f64) -> Self {
+        let (n, d) = (normal, normal.dot(point));
+        let a = DMat3::from_cols(n * n.x, n * n.y, n * n.z) * weight;
+        Self { a, b: n * (d * weight), c: d * d * weight, area: 0.0 }
+    }
+
+    fn add(&mut self, other: &Self) {
+        self.a += other.a;
+        self.b += other.b;
+        self.c += other.c;
+        self.area += other.area;
+    }
+
+    fn at(&self, x: DVec3) -> f64 {
+        (x.dot(self.a * x) - 2.0 * self.b.dot(x) + self.c).max(0.0)
+    }
+}
+
+struct Mesh<'a> {
+    points: &'a [DVec3],
+    faces: Vec<[u32; 3]>,
+    alive: Vec<bool>,
+    /// Faces of each vertex, dead ones among them.
+    around: Vec<Vec<u32>>,
+    quadrics: Vec<Quadric>,
+    stamp: Vec<u32>,
+}
+
+/// Collapses until about `target` vertices with faces are left. `keep` is #V: what must stay.
+pub fn decimate(faces: &[[u32; 3]], points: &[DVec3], keep: &[bool], target: usize) -> Coarse {
+    let mut mesh = Mesh::new(faces, points);
+    let mut onto: Vec<u32> = (0..points.len() as u32).collect();
+    let mut left = mesh.around.iter().filter(|f| !f.is_empty()).count();
+    let mut heap = BinaryHeap::new();
+    for v in 0..points.len() as u32 {
+        mesh.offer(v, keep, &mut heap);
+    }
+    while left > target {
+        let Some(Reverse((_, v, u, stamp))) = heap.pop() else { break };
+        if stamp != mesh.stamp[v as usize] || !mesh.may_collapse(v, u) {
+            continue;
+        }
+        mesh.collapse(v, u);
+        onto[v as usize] = u;
+        left -= 1;
+        let mut near = mesh.neighbours(u);
+        near.push(u);
+        for w in near {
+            mesh.stamp[w as usize] += 1;
+            mesh.offer(w, keep, &mut heap);
+        }
+    }
+    for v in 0..onto.len() {
+        let mut end = v as u32;
+        while onto[end as usize] != end {
+            end = onto[end as usize];
+        }
+        onto[v] = end;
+    }
+    let faces = mesh.faces.iter().zip(&mesh.alive).filter(|(_, alive)| **alive).map(|(face, _)| *face).collect();
+    Coarse { faces, onto }
+}
+
+impl<'a> Mesh<'a> {
+    fn new(faces: &[[u32; 3]], points: &'a [DVec3]) -> Self {
+        let mut around = vec![Vec::new(); points.len()];
+        let mut quadrics = vec![Quadric::NONE; points.len()];
+        let mut sides = Vec::with_capacity(3 * faces.len());
+        for (f, face) in faces.iter().enumerate() {
+            let [a, b, c] = face.map(|v| points[v as usize]);
+            let normal = (b - a).cross(c - a);
+            let area = 0.5 * normal.length();
+            let quadric = Quadric { area, ..Quadric::plane(normal.normalize_or_zero(), a, area) };
+            for i in 0..3 {
+                around[face[i] as usize].push(f as u32);
+                quadrics[face[i] as usize].add(&quadric);
+                let (u, v) = (face[i], face[(i + 1) % 3]);
+                sides.push((u.min(v), u.max(v), normal));
+            }
+        }
+        sides.sort_by_key(|side| (side.0, side.1));
+        for same in sides.chunk_by(|x, y| (x.0, x.1) == (y.0, y.1)) {
+            if let &[(u, v, normal)] = same {
+                // Boundaries are held by planes that stand on them.
+                let edge = points[v as usize] - points[u as usize];
+                let wall = edge.cross(normal).normalize_or_zero();
+                let quadric = Quadric::plane(wall, points[u as usize], edge.length_squared());
+                [u, v].iter().for_each(|&v| quadrics[v as usize].add(&quadric));
+            }
+        }
+        let (alive, stamp) = (vec![true; faces.len()], vec![0; points.len()]);
+        Self { points, faces: faces.to_vec(), alive, around, quadrics, stamp }
+    }
+
+    fn faces_of(&self, v: u32) -> impl Iterator<Item = u32> + '_ {
+        self.around[v as usize].iter().copied().filter(|&f| self.alive[f as usize])
+    }
+
+    fn neighbours(&self, v: u32) -> Vec<u32> {
+        let mut near: Vec<u32> = self.faces_of(v).flat_map(|f| self.faces[f as usize]).filter(|&w| w != v).collect();
+        near.sort_unstable();
+        near.dedup();
+        near
+    }
+
+    /// Puts the cheapest collapse of `v` into the heap.
+    fn offer(&self, v: u32, keep: &[bool], heap: &mut BinaryHeap<Reverse<(u64, u32, u32, u32)>>) {
+        if keep[v as usize] {
+            return;
+        }
+        let near = self.neighbours(v);
+        let mut offers: Vec<(f64, u32)> = near.iter().map(|&u| (self.price(v, u), u)).collect();
+        offers.sort_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
+        if let Some(&(price, u)) = offers.iter().find(|offer| self.may_collapse(v, offer.1)) {
+            heap.push(Reverse((price.to_bits(), v, u, self.stamp[v as usize])));
+        }
+    }
+
+    fn price(&self, v: u32, u: u32) -> f64 {
+        let (p, q) = (self.points[v as usize], self.points[u as usize]);
+        let mut quadric = self.quadrics[v as usize];
+        quadric.add(&self.quadrics[u as usize]);
+        let price = quadric.at(q) + EVEN * quadric.area * p.distance_squared(q);
+        if price.is_finite() { price } else { f64::MAX }
+    }
+
+    /// Whether `v` can move onto `u` without changing the topology or turning a face over.
+    fn may_collapse(&self, v: u32, u: u32) -> bool {
+        let opposite: Vec<u32> = (self.faces_of(v).map(|f| self.faces[f as usize]))
+            .filter(|face| face.contains(&u))
+            .flat_map(|face| face.into_iter().filter(|&w| w != u && w != v))
+            .collect();
+        let (of_v, of_u) = (self.neighbours(v), self.neighbours(u));
+        let common = of_v.iter().filter(|w| of_u.binary_search(w).is_ok()).count();
+        // An edge inside between two vertices of the boundary would pinch the surface.
+        let pinches = opposite.len() == 2 && self.on_boundary(v, &of_v);
+        let is_edge = matches!(opposite.len(), 1 | 2);
+        if !is_edge || common != opposite.len() || pinches {
+            return false;
+        }
+        // Nobody may be left without a face.
+        if self.faces_of(v).count() == opposite.len() || opposite.iter().any(|&w| self.faces_of(w).count() < 2) {
+            return false;
+        }
+        self.faces_of(v).map(|f| self.faces[f as usize]).filter(|face| !face.contains(&u)).all(|face| {
+            let moved = face.map(|w| if w == v { u } else { w });
+            self.keeps_its_side(face, moved) && !self.exists(moved, u)
+        })
+    }
+
+    /// Whether some edge of `v` has other than two faces.
+    fn on_boundary(&self, v: u32, near: &[u32]) -> bool {
+        let faces: Vec<[u32; 3]> = self.faces_of(v).map(|f| self.faces[f as usize]).collect();
+        near.iter().any(|w| faces.iter().filter(|face| face.contains(w)).count() != 2)
+    }
+
+    fn keeps_its_side(&self, before: [u32; 3], after: [u32; 3]) -> bool {
+        let normal = |face: [u32; 3]| {
+            let [a, b, c] = face.map(|v| self.points[v as usize]);
+            let size = a.distance_squared(b) + b.distance_squared(c) + c.distance_squared(a);
+            ((b - a).cross(c - a), size)
+        };
+        let ((old, _), (new, size)) = (normal(before), normal(after));
+        // No needles: area over squared sides is 0.29 for an equilateral triangle.
+        let slim = new.length() < 0.02 * size && new.length() < 0.5 * old.length();
+        !slim && old.dot(new) >= 0.2 * old.length() * new.length()
+    }
+
+    fn exists(&self, mut face: [u32; 3], v: u32) -> bool {
+        face.sort_unstable();
+        self.faces_of(v).any(|f| {
+            let mut other = self.faces[f as usize];
+            other.sort_unstable();
+            other == face
+        })
+    }
+
+    fn collapse(&mut self, v: u32, u: u32) {
+        for f in std::mem::take(&mut self.around[v as usize]) {
+            if !self.alive[f as usize] {
+                continue;
+            }
+            if self.faces[f as usize].contains(&u) {
+                self.alive[f as usize] = false;
+            } else {
+                self.faces[f as usize].iter_mut().filter(|w| **w == v).for_each(|w| *w = u);
+                self.around[u as usize].push(f);
+            }
+        }
+        let (alive, faces) = (&self.alive, &mut self.around[u as usize]);
+        faces.retain(|&f| alive[f as usize]);
+        let quadric = self.quadrics[v as usize];
+        self.quadrics[u as usize].add(&quadric);
+        self.stamp[v as usize] += 1;
+    }
+}

@@ -1,0 +1,94 @@
+//! Algorithm 1 by the letter, on the mesh itself: the oracle of the search.
+//!
+//! Every candidate at every step: weights of all handles, fits of all poses. Groups are found once for every set that is
+//! accepted.
+
+use super::full::Full;
+use super::result::{Replacement, Step, Tried};
+use crate::weights::WeightsError;
+
+/// What the letter finds.
+pub struct Found {
+    /// Vertices of the sequence, in the order chosen.
+    pub points: Vec<u32>,
+    /// Step by step.
+    pub steps: Vec<Step>,
+    /// In the order they were made.
+    pub replacements: Vec<Replacement>,
+}
+
+/// Runs both stages. `enough` hears the number of points and the error and says whether to stop adding. `None` where
+/// `keep_going` says so.
+pub fn search(
+    full: &Full,
+    candidates: &[u32],
+    enough: &mut dyn FnMut(usize, f64) -> bool,
+    keep_going: &mut dyn FnMut() -> bool,
+) -> Result<Option<Found>, WeightsError> {
+    let mut points: Vec<u32> = candidates.iter().take(1).copied().collect();
+    let (mut steps, mut replacements) = (Vec::new(), Vec::new());
+    let (mut groups, mut error) = accepted(full, &points)?;
+    while !enough(points.len(), error) {
+        let rest: Vec<u32> = candidates.iter().copied().filter(|c| !points.contains(c)).collect();
+        let Some(tried) = tried(full, &points, &rest, &groups, keep_going)? else { return Ok(None) };
+        let Some(best) = best(&tried) else { break };
+        points.push(best.vertex);
+        (groups, error) = accepted(full, &points)?;
+        steps.push(Step { tried, chosen: best.vertex, error: best.error });
+    }
+    loop {
+        let before = replacements.len();
+        for place in 0..points.len() {
+            let mut others = points.clone();
+            let gone = others.remove(place);
+            let rest: Vec<u32> = candidates.iter().copied().filter(|c| !points.contains(c)).collect();
+            let Some(tried) = tried(full, &others, &rest, &groups, keep_going)? else { return Ok(None) };
+            if let Some(best) = best(&tried).filter(|best| best.error < error * (1.0 - 1e-9)) {
+                let mut next = points.clone();
+                next[place] = best.vertex;
+                let (next_groups, next_error) = accepted(full, &next)?;
+                // New groups change the error a little: only what is better with them is an improvement.
+                if next_error < error {
+                    (points, groups, error) = (next, next_groups, next_error);
+                    replacements.push(Replacement { from: gone, to: best.vertex, error });
+                }
+            }
+        }
+        if replacements.len() == before {
+            return Ok(Some(Found { points, steps, replacements }));
+        }
+    }
+}
+
+/// The groups of a set and its error with them.
+fn accepted(full: &Full, points: &[u32]) -> Result<(Vec<u32>, f64), WeightsError> {
+    let weights = full.weights(points, None)?;
+    let groups = full.groups(&weights);
+    let error = full.error(&weights, &groups);
+    Ok((groups, error))
+}
+
+/// The error of the set with each of `rest`; `None` where `keep_going` says so.
+fn tried(
+    full: &Full,
+    points: &[u32],
+    rest: &[u32],
+    groups: &[u32],
+    keep_going: &mut dyn FnMut() -> bool,
+) -> Result<Option<Vec<Tried>>, WeightsError> {
+    let mut tried = Vec::with_capacity(rest.len());
+    let mut set = points.to_vec();
+    for &vertex in rest {
+        if !keep_going() {
+            return Ok(None);
+        }
+        set.push(vertex);
+        tried.push(Tried { vertex, error: full.error(&full.weights(&set, None)?, groups) });
+        set.pop();
+    }
+    Ok(Some(tried))
+}
+
+fn best(tried: &[Tried]) -> Option<Tried> {
+    tried.iter().copied().reduce(|best, t| if t.error < best.error { t } else { best })
+}

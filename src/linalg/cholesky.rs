@@ -1,0 +1,177 @@
+//! Sparse Cholesky factorisation behind one small type; the work is done by the crate `faer`.
+
+use faer::dyn_stack::{MemBuffer, MemStack};
+use faer::linalg::cholesky::llt::factor::LltRegularization;
+use faer::sparse::linalg::cholesky::{
+    CholeskySymbolicParams, LltRef, SymbolicCholesky, SymmetricOrdering, factorize_symbolic_cholesky,
+};
+use faer::sparse::{SparseColMatRef, SymbolicSparseColMatRef};
+use faer::{Conj, MatMut, Par, Side};
+
+/// The matrix has no Cholesky factor: it is not positive definite within rounding, or has entries that are no numbers.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
+#[error("the system of equations has no unique solution")]
+pub struct NotPositiveDefinite;
+
+/// How the unknowns are numbered while they are eliminated.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Ordering {
+    /// By approximate minimum degree, for little fill.
+    MinimumDegree,
+    /// As they are given: the caller has put them in a good order.
+    AsGiven,
+}
+
+/// The lower triangle of a symmetric n × n matrix, by columns.
+#[derive(Clone, Debug, Default)]
+pub struct Lower {
+    /// n + 1 places in `rows` and `values` where each column starts, and their length.
+    pub starts: Vec<u32>,
+    /// Row numbers, rising within a column, none above the diagonal.
+    pub rows: Vec<u32>,
+    /// The entries.
+    pub values: Vec<f64>,
+}
+
+/// The factor L of a symmetric positive definite matrix A = L Lᵀ.
+#[derive(Debug)]
+pub struct Cholesky {
+    symbolic: SymbolicCholesky<u32>,
+    values: Vec<f64>,
+}
+
+impl Cholesky {
+    /// Factors an n × n matrix given by entries (row, column, value) of its lower triangle, in any order; equal places
+    /// are summed. Entries above the diagonal are left out, so that a full symmetric list serves as well.
+    pub fn new(n: usize, entries: &[(u32, u32, f64)]) -> Result<Self, NotPositiveDefinite> {
+        Self::of(&Lower::new(n, entries)?, Ordering::MinimumDegree)
+    }
+
+    /// Factors a matrix given by columns.
+    pub fn of(matrix: &Lower, ordering: Ordering) -> Result<Self, NotPositiveDefinite> {
+        let n = matrix.starts.len().saturating_sub(1);
+        if !matrix.values.iter().all(|v| v.is_finite()) {
+            return Err(NotPositiveDefinite);
+        }
+        let structure = SymbolicSparseColMatRef::new_checked(n, n, &matrix.starts, None, &matrix.rows);
+        let ordering = match ordering {
+            Ordering::MinimumDegree => SymmetricOrdering::Amd,
+            Ordering::AsGiven => SymmetricOrdering::Identity,
+        };
+        let parameters = CholeskySymbolicParams::default();
+        let symbolic = factorize_symbolic_cholesky(structure, Side::Lower, ordering, parameters);
+        let symbolic = symbolic.map_err(|_| NotPositiveDefinite)?;
+        let mut values = vec![0.0; symbolic.len_val()];
+        let scratch = symbolic.factorize_numeric_llt_scratch::<f64>(Par::Seq, Default::default());
+        let mut buffer = MemBuffer::try_new(scratch).map_err(|_| NotPositiveDefinite)?;
+        let entries = SparseColMatRef::new(structure, &matrix.values);
+        let done = symbolic.factorize_numeric_llt(
+            &mut values,
+            entries,
+            Side::Lower,
+            LltRegularization::default(),
+            Par::Seq,
+            MemStack::new(&mut buffer),
+            Default::default(),
+        );
+        let done = done.is_ok();
+        if done && values.iter().all(|v| v.is_finite()) {
+            Ok(Self { symbolic, values })
+        } else {
+            Err(NotPositiveDefinite)
+        }
+    }
+
+    /// The number of unknowns.
+    pub fn size(&self) -> usize {
+        self.symbolic.nrows()
+    }
+
+    /// The number of stored entries of the factor.
+    pub fn entries(&self) -> usize {
+        self.values.len()
+    }
+
+    /// Replaces right-hand sides by solutions: `columns` is n × k, column by column.
+    pub fn solve(&self, columns: &mut [f64]) {
+        let n = self.size();
+        let count = columns.len().checked_div(n).unwrap_or(0);
+        if count == 0 {
+            return;
+        }
+        let columns = MatMut::from_column_major_slice_mut(&mut columns[..n * count], n, count);
+        let scratch = self.symbolic.solve_in_place_scratch::<f64>(count, Par::Seq);
+        let mut buffer = MemBuffer::new(scratch);
+        let factor = LltRef::new(&self.symbolic, &self.values);
+        factor.solve_in_place_with_conj(Conj::No, columns, Par::Seq, MemStack::new(&mut buffer));
+    }
+}
+
+impl Lower {
+    /// Sorts entries (row, column, value) by columns and sums those of one place; those above the diagonal and outside
+    /// the matrix are left out.
+    fn new(n: usize, entries: &[(u32, u32, f64)]) -> Result<Self, NotPositiveDefinite> {
+        let inside = |&&(row, column, _): &&(u32, u32, f64)| column <= row && (row as usize) < n;
+        let mut sorted: Vec<(u32, u32, f64)> = entries.iter().filter(inside).copied().collect();
+        sorted.sort_by_key(|&(row, column, _)| (column, row));
+        if u32::try_from(sorted.len()).is_err() {
+            return Err(NotPositiveDefinite);
+        }
+        let mut lower = Self { starts: vec![0; n + 1], rows: Vec::new(), values: Vec::new() };
+        for same in sorted.chunk_by(|a, b| (a.0, a.1) == (b.0, b.1)) {
+            lower.starts[same[0].1 as usize + 1] += 1;
+            lower.rows.push(same[0].0);
+            lower.values.push(same.iter().map(|entry| entry.2).sum());
+        }
+        for column in 0..n {
+            lower.starts[column + 1] += lower.starts[column];
+        }
+        Ok(lower)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A grid of springs, held weakly.
+    fn grid(side: u32) -> Vec<(u32, u32, f64)> {
+        let mut entries = Vec::new();
+        for v in 0..side * side {
+            entries.push((v, v, 0.01));
+            for (inside, next) in [(v % side + 1 < side, v + 1), (v / side + 1 < side, v + side)] {
+                if inside {
+                    entries.extend([(v, v, 1.0), (next, next, 1.0), (next, v, -1.0), (v, next, -1.0)]);
+                }
+            }
+        }
+        entries
+    }
+
+    #[test]
+    fn solutions_solve() {
+        for side in [1, 2, 7, 40] {
+            let n = (side * side) as usize;
+            let entries = grid(side);
+            let right: Vec<f64> = (0..3 * n).map(|i| (i as f64).sin()).collect();
+            let mut x = right.clone();
+            Cholesky::new(n, &entries).expect("a positive definite matrix").solve(&mut x);
+            let mut product = vec![0.0; 3 * n];
+            for k in 0..3 {
+                for &(row, column, value) in &entries {
+                    product[k * n + row as usize] += value * x[k * n + column as usize];
+                }
+            }
+            let worst = product.iter().zip(&right).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
+            assert!(worst < 1e-10, "{side}: {worst}");
+        }
+    }
+
+    #[test]
+    fn refuses_what_is_not_positive_definite() {
+        assert!(Cholesky::new(2, &[(0, 0, 1.0), (1, 0, 2.0), (1, 1, 1.0)]).is_err());
+        assert!(Cholesky::new(2, &[(0, 0, 1.0)]).is_err());
+        assert!(Cholesky::new(1, &[(0, 0, f64::NAN)]).is_err());
+        assert!(Cholesky::new(0, &[]).is_ok());
+    }
+}

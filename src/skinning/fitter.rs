@@ -1,0 +1,448 @@
+//! The affine maps of a handle set that follow a pose: the alternation of §3.4, reduced.
+//!
+//! With `d` the displacements, `d = Φ X`: a vertex's row of Φ (#V × 4h) is `w_k [p − c_k, 1]` for each handle k at
+//! `c_k`. Per group g of edges `e`, with `N_g = R_g − 1`,
+//!
+//! | formula | code |
+//! |---|---|
+//! | `A = λ Φᵀ L Φ + Φᵀ M Φ` (4h × 4h) | factored once |
+//! | `K_g = λ Σ w̃ (φ_i − φ_j) eᵀ` (4h × 3), `P_g = λ Σ w̃ e eᵀ` | `Group` |
+//! | global step, `A X = Σ K_g N_gᵀ + c`, `c = Φᵀ M d′` | `X = X_c + Σ Y_g N_gᵀ` |
+//! | local step, `R_g` nearest to `Xᵀ K_g + P_g` | `coupling`: `K_gᵀ Y_g′`, so that rounds see only 3 × 3 blocks |
+//!
+//! A is singular where a handle sees a flat patch, and nearly so where handles crowd; maps would then run wild, which
+//! the fit does not feel but another body would. So every handle carries a small cross of three edges, weighted by the
+//! share `hold` of what the handle moves: its arms take part in the energy like edges of the handle's group, and its
+//! centre is drawn to where the pose has it. The energy falls as before.
+
+use super::factor::Factor;
+use super::rows::Rows;
+use crate::linalg::polar;
+use crate::linalg::rigid_fit::{Moments, RigidMotion};
+use glam::{DAffine3, DMat3, DVec3};
+use serde::{Deserialize, Serialize};
+
+/// What the fit weighs.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(default, rename_all = "kebab-case")]
+pub struct FitParameters {
+    /// λ of Eq. 5, the share of rigidity (paper: 0.5), for a mesh of [`LIKE_VERTICES`] vertices: E_diff is taken as a
+    /// mean so that a finer mesh weighs no more.
+    pub lambda: f64,
+    /// How firmly maps are held near rotations where the pose does not say: the weight of a handle's cross over that
+    /// of the vertices it moves.
+    pub hold: f64,
+    /// The rounds at most.
+    pub rounds: usize,
+    /// Rounds end when the energy falls by less than this share.
+    pub tolerance: f64,
+}
+
+impl Default for FitParameters {
+    fn default() -> Self {
+        Self { lambda: 0.5, hold: 1e-3, rounds: 60, tolerance: 1e-9 }
+    }
+}
+
+/// The number of vertices for which λ means what it means in the paper, whose meshes have 1,100 to 2,700.
+pub const LIKE_VERTICES: f64 = 2500.0;
+
+/// A mesh with handles, weights and groups.
+#[derive(Clone, Copy, Debug)]
+pub struct Rig<'a> {
+    /// #V points.
+    pub reference: &'a [DVec3],
+    /// Edges as pairs of vertices.
+    pub edges: &'a [[u32; 2]],
+    /// Their weights w̃ (cotangents); negative ones count as 0.
+    pub stiffness: &'a [f64],
+    /// #V: how much each vertex counts in E_diff and in the mean distance (0 for a vertex that does not count).
+    pub mass: &'a [f64],
+    /// The vertices that are handles.
+    pub handles: &'a [u32],
+    /// #V × #H.
+    pub weights: &'a Rows,
+    /// #V group numbers.
+    pub groups: &'a [u32],
+    /// Centre and radius of the unit sphere.
+    pub ball: (DVec3, f64),
+}
+
+/// The maps that follow one pose best.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Fit {
+    /// One map a handle, in mesh units, from the reference to the pose.
+    pub maps: Vec<DAffine3>,
+    /// The energy after each round, in unit-sphere units; it never rises.
+    pub energies: Vec<f64>,
+    /// Mean vertex distance between blended vertices and the pose, in unit-sphere radii.
+    pub error: f64,
+}
+
+/// A rig, ready to follow any pose.
+pub struct Fitter {
+    parameters: FitParameters,
+    centre: DVec3,
+    radius: f64,
+    /// #V points in the unit sphere.
+    points: Vec<DVec3>,
+    mass: Vec<f64>,
+    total: f64,
+    rows: Rows,
+    handles: Vec<u32>,
+    at: Vec<DVec3>,
+    /// Weight of each handle's cross.
+    hold: Vec<f64>,
+    factor: Factor,
+    groups: Vec<Group>,
+    /// (3 #G)² row-major: `Kᵀ A⁻¹ K`.
+    coupling: Vec<f64>,
+}
+
+/// What a group of edges says about its rotation.
+#[derive(Clone)]
+struct Group {
+    /// 4h × 3.
+    k: Vec<[f64; 3]>,
+    /// A⁻¹ K.
+    y: Vec<[f64; 3]>,
+    p: DMat3,
+}
+
+/// A pose brought next to the reference.
+struct Target {
+    motion: RigidMotion,
+    /// #V displacements from the reference, in the unit sphere.
+    displacements: Vec<DVec3>,
+    /// A⁻¹ c (4h × 3), Kᵀ A⁻¹ c (3 #G × 3), `Σ m |d′|²` less tr(cᵀ A⁻¹ c).
+    x: Vec<[f64; 3]>,
+    pull: Vec<DMat3>,
+    constant: f64,
+}
+
+impl Fitter {
+    /// Prepares a rig: everything that does not depend on the pose.
+    pub fn new(rig: &Rig, parameters: &FitParameters) -> Self {
+        let (centre, radius) = (rig.ball.0, if rig.ball.1 > 0.0 { rig.ball.1 } else { 1.0 });
+        let points: Vec<DVec3> = rig.reference.iter().map(|&p| (p - centre) / radius).collect();
+        let sum: f64 = rig.mass.iter().sum();
+        let scale = if sum > 0.0 { LIKE_VERTICES / sum } else { 0.0 };
+        let mass: Vec<f64> = rig.mass.iter().map(|m| m * scale).collect();
+        let at: Vec<DVec3> = rig.handles.iter().map(|&v| points[v as usize]).collect();
+        let mut hold = vec![0.0; at.len()];
+        for (v, m) in mass.iter().enumerate() {
+            rig.weights.entries(v).for_each(|(k, w)| hold[k as usize] += parameters.hold * m * w);
+        }
+        let floor = parameters.hold * LIKE_VERTICES * 1e-6;
+        hold.iter_mut().for_each(|h| *h = h.max(floor));
+        let count = rig.groups.iter().max().map_or(1, |&g| g as usize + 1);
+        let mut assembly = Assembly::new(4 * at.len(), count);
+        assembly.add_vertices(&points, &mass, rig.weights, &at);
+        assembly.add_edges(rig, &points, &at, parameters.lambda);
+        assembly.add_crosses(rig, &hold);
+        let factor = Factor::new(assembly.a, 4 * at.len());
+        let mut groups = assembly.groups;
+        for group in &mut groups {
+            group.y.clone_from(&group.k);
+            factor.solve(&mut group.y);
+        }
+        let coupling = coupling(&groups);
+        let (rows, handles) = (rig.weights.clone(), rig.handles.to_vec());
+        let total = mass.iter().sum();
+        Self { parameters: *parameters, centre, radius, points, mass, total, rows, handles, at, hold, factor, groups, coupling }
+    }
+
+    /// The maps that make the rig follow `pose` (#V points, in the reference's order).
+    pub fn fit(&self, pose: &[DVec3]) -> Fit {
+        let target = self.target(pose);
+        let (turns, energies) = self.alternate(&target);
+        let x = self.solution(&target, &turns);
+        let error = self.error(&target, &x);
+        Fit { maps: self.maps(&target.motion, &x), energies, error }
+    }
+
+    /// The pose without its best rigid motion, and what it says to the handles.
+    fn target(&self, pose: &[DVec3]) -> Target {
+        let mean = self.mean(pose);
+        let place = |q: DVec3| (q - mean) / self.radius;
+        let mut moments = Moments::default();
+        for ((&m, &p), &q) in self.mass.iter().zip(&self.points).zip(pose) {
+            if m > 0.0 {
+                moments.add(m, p, place(q));
+            }
+        }
+        let mut motion = moments.motion();
+        let back = motion.rotation.transpose();
+        let displacement = |(&p, &q): (&DVec3, &DVec3)| back * (place(q) - motion.translation) - p;
+        let displacements: Vec<DVec3> = self.points.iter().zip(pose).map(displacement).collect();
+        motion.translation = motion.translation * self.radius + mean;
+
+        let mut c = vec![[0.0; 3]; 4 * self.at.len()];
+        let mut constant = 0.0;
+        for (v, (&m, &d)) in self.mass.iter().zip(&displacements).enumerate() {
+            if m <= 0.0 {
+                continue;
+            }
+            constant += m * d.length_squared();
+            for (k, w) in self.rows.entries(v) {
+                let k = k as usize;
+                let local = self.points[v] - self.at[k];
+                add_outer(&mut c[4 * k..4 * k + 4], m * w, local, d);
+            }
+        }
+        for (k, (&v, &hold)) in self.handles.iter().zip(&self.hold).enumerate() {
+            let d = displacements[v as usize];
+            constant += hold * d.length_squared();
+            (0..3).for_each(|i| c[4 * k + 3][i] += hold * d[i]);
+        }
+        let mut x = c.clone();
+        self.factor.solve(&mut x);
+        constant -= c.iter().flatten().zip(x.iter().flatten()).map(|(a, b)| a * b).sum::<f64>();
+        let pull = self.groups.iter().map(|g| transposed_product(&g.k, &x)).collect();
+        Target { motion, displacements, x, pull, constant }
+    }
+
+    fn mean(&self, pose: &[DVec3]) -> DVec3 {
+        let sum: DVec3 = self.mass.iter().zip(pose).map(|(&m, &q)| m / self.total.max(f64::MIN_POSITIVE) * q).sum();
+        if sum.is_finite() { sum } else { DVec3::ZERO }
+    }
+
+    /// Local and global steps in turn: `N_gᵀ` of every group, and the energy after each round.
+    fn alternate(&self, target: &Target) -> (Vec<DMat3>, Vec<f64>) {
+        let mut turns = vec![DMat3::ZERO; self.groups.len()];
+        let mut response = self.response(target, &turns);
+        let mut energies = vec![self.energy(target, &turns, &response)];
+        for _ in 0..self.parameters.rounds {
+            let next: Vec<DMat3> = self
+                .groups
+                .iter()
+                .zip(&response)
+                .map(|(group, s)| polar::rotation(s.transpose() + group.p).transpose() - DMat3::IDENTITY)
+                .collect();
+            let answer = self.response(target, &next);
+            let energy = self.energy(target, &next, &answer);
+            let before = energies[energies.len() - 1];
+            // What is left is rounding.
+            if energy.is_nan() || energy >= before {
+                break;
+            }
+            (turns, response) = (next, answer);
+            energies.push(energy);
+            if before - energy <= self.parameters.tolerance * before {
+                break;
+            }
+        }
+        (turns, energies)
+    }
+
+    /// `K_gᵀ X` of every group, X being the best for the given `N_gᵀ`.
+    fn response(&self, target: &Target, turns: &[DMat3]) -> Vec<DMat3> {
+        let n = self.groups.len();
+        let mut response = target.pull.clone();
+        for (g, sum) in response.iter_mut().enumerate() {
+            for (h, turn) in turns.iter().enumerate() {
+                let block = |i: usize, j: usize| self.coupling[(3 * g + i) * 3 * n + 3 * h + j];
+                let column = |j| DVec3::new(block(0, j), block(1, j), block(2, j));
+                *sum += DMat3::from_cols(column(0), column(1), column(2)) * *turn;
+            }
+        }
+        response
+    }
+
+    /// The energy at the best X for the given `N_gᵀ`.
+    fn energy(&self, target: &Target, turns: &[DMat3], response: &[DMat3]) -> f64 {
+        let mut energy = target.constant;
+        for (g, turn) in turns.iter().enumerate() {
+            energy += dot(turn, &(self.groups[g].p * *turn)) - dot(turn, &(target.pull[g] + response[g]));
+        }
+        energy.max(0.0)
+    }
+
+    fn solution(&self, target: &Target, turns: &[DMat3]) -> Vec<[f64; 3]> {
+        let mut x = target.x.clone();
+        for (group, turn) in self.groups.iter().zip(turns) {
+            for (row, y) in x.iter_mut().zip(&group.y) {
+                let add = turn.transpose() * DVec3::from_array(*y);
+                (0..3).for_each(|i| row[i] += add[i]);
+            }
+        }
+        x
+    }
+
+    /// Mean distance between `Φ X` and the displacements, in unit-sphere radii.
+    fn error(&self, target: &Target, x: &[[f64; 3]]) -> f64 {
+        let mut sum = 0.0;
+        for (v, (&m, &wanted)) in self.mass.iter().zip(&target.displacements).enumerate() {
+            if m <= 0.0 {
+                continue;
+            }
+            let mut d = -wanted;
+            for (k, w) in self.rows.entries(v) {
+                let k = k as usize;
+                d += w * applied(&x[4 * k..4 * k + 4], self.points[v] - self.at[k]);
+            }
+            sum += m * d.length();
+        }
+        if self.total > 0.0 { sum / self.total } else { 0.0 }
+    }
+
+    /// The maps in mesh units.
+    fn maps(&self, motion: &RigidMotion, x: &[[f64; 3]]) -> Vec<DAffine3> {
+        let map = |(x, &at): (&[[f64; 3]], &DVec3)| {
+            let rows = [0, 1, 2, 3].map(|i| DVec3::from_array(x[i]));
+            let linear = DMat3::from_cols(rows[0], rows[1], rows[2]);
+            // Next to the reference: y ↦ y + linear (y − c) + shift, in the unit sphere.
+            let here = DMat3::IDENTITY + linear;
+            let shift = rows[3] - linear * at;
+            let matrix3 = motion.rotation * here;
+            let translation = motion.translation + motion.rotation * (shift * self.radius) - matrix3 * self.centre;
+            DAffine3 { matrix3, translation }
+        };
+        x.chunks_exact(4).zip(&self.at).map(map).collect()
+    }
+}
+
+/// The sums over vertices and edges.
+struct Assembly {
+    n: usize,
+    a: Vec<f64>,
+    groups: Vec<Group>,
+}
+
+impl Assembly {
+    fn new(n: usize, groups: usize) -> Self {
+        let group = Group { k: vec![[0.0; 3]; n], y: Vec::new(), p: DMat3::ZERO };
+        Self { n, a: vec![0.0; n * n], groups: vec![group; groups] }
+    }
+
+    /// `Φᵀ M Φ`.
+    fn add_vertices(&mut self, points: &[DVec3], mass: &[f64], weights: &Rows, at: &[DVec3]) {
+        let mut row = Vec::new();
+        for (v, &m) in mass.iter().enumerate() {
+            if m > 0.0 {
+                row.clear();
+                row.extend(weights.entries(v).map(|(k, w)| (k, scaled(w, points[v] - at[k as usize]))));
+                self.add_square(&row, m);
+            }
+        }
+    }
+
+    /// `λ Φᵀ L Φ` and the groups; an edge counts half in the group of each of its ends.
+    fn add_edges(&mut self, rig: &Rig, points: &[DVec3], at: &[DVec3], lambda: f64) {
+        let mut row = Vec::new();
+        for (&[i, j], &stiffness) in rig.edges.iter().zip(rig.stiffness) {
+            let weight = lambda * stiffness;
+            if !(weight > 0.0 && weight.is_finite()) {
+                continue;
+            }
+            let [a, b] = [i as usize, j as usize];
+            difference(rig.weights, [a, b], [points[a], points[b]], at, &mut row);
+            self.add_square(&row, weight);
+            let e = points[a] - points[b];
+            for end in [a, b] {
+                let group = &mut self.groups[rig.groups[end] as usize];
+                group.p += outer(e * (0.5 * weight), e);
+                for (k, f) in &row {
+                    let k = 4 * *k as usize;
+                    for (row, f) in group.k[k..k + 4].iter_mut().zip(f) {
+                        (0..3).for_each(|c| row[c] += 0.5 * weight * f * e[c]);
+                    }
+                }
+            }
+        }
+    }
+
+    /// The handles' crosses.
+    fn add_crosses(&mut self, rig: &Rig, hold: &[f64]) {
+        for (k, (&v, &hold)) in rig.handles.iter().zip(hold).enumerate() {
+            let group = &mut self.groups[rig.groups[v as usize] as usize];
+            group.p += DMat3::from_diagonal(DVec3::splat(hold));
+            for axis in 0..3 {
+                group.k[4 * k + axis][axis] += hold;
+            }
+            for i in 4 * k..4 * k + 4 {
+                self.a[i * self.n + i] += hold;
+            }
+        }
+    }
+
+    /// Adds `weight φ φᵀ` to the lower triangle.
+    fn add_square(&mut self, row: &[(u32, [f64; 4])], weight: f64) {
+        for (r, (k, f)) in row.iter().enumerate() {
+            for (l, g) in &row[..=r] {
+                for (i, f) in f.iter().enumerate() {
+                    let from = (4 * *k as usize + i) * self.n + 4 * *l as usize;
+                    let wf = weight * f;
+                    self.a[from..from + 4].iter_mut().zip(g).for_each(|(a, g)| *a += wf * g);
+                }
+            }
+        }
+    }
+}
+
+/// `φ_i − φ_j`, merged from two rows that are in the order of handles.
+fn difference(rows: &Rows, [a, b]: [usize; 2], points: [DVec3; 2], at: &[DVec3], row: &mut Vec<(u32, [f64; 4])>) {
+    row.clear();
+    row.extend(rows.entries(a).map(|(k, w)| (k, scaled(w, points[0] - at[k as usize]))));
+    let mut place = 0;
+    for (k, w) in rows.entries(b) {
+        while row.get(place).is_some_and(|r| r.0 < k) {
+            place += 1;
+        }
+        let other = scaled(-w, points[1] - at[k as usize]);
+        match row.get_mut(place) {
+            Some(r) if r.0 == k => (0..4).for_each(|i| r.1[i] += other[i]),
+            _ => row.insert(place, (k, other)),
+        }
+    }
+}
+
+fn scaled(w: f64, p: DVec3) -> [f64; 4] {
+    [w * p.x, w * p.y, w * p.z, w]
+}
+
+fn outer(a: DVec3, b: DVec3) -> DMat3 {
+    DMat3::from_cols(a * b.x, a * b.y, a * b.z)
+}
+
+fn add_outer(rows: &mut [[f64; 3]], weight: f64, local: DVec3, d: DVec3) {
+    let f = scaled(weight, local);
+    for (row, f) in rows.iter_mut().zip(f) {
+        (0..3).for_each(|i| row[i] += f * d[i]);
+    }
+}
+
+fn applied(x: &[[f64; 3]], local: DVec3) -> DVec3 {
+    let [a, b, c, d] = [0, 1, 2, 3].map(|i| DVec3::from_array(x[i]));
+    a * local.x + b * local.y + c * local.z + d
+}
+
+/// `kᵀ x` of two n × 3 matrices.
+fn transposed_product(k: &[[f64; 3]], x: &[[f64; 3]]) -> DMat3 {
+    let mut sum = DMat3::ZERO;
+    for (k, x) in k.iter().zip(x) {
+        sum += outer(DVec3::from_array(*k), DVec3::from_array(*x));
+    }
+    sum
+}
+
+fn coupling(groups: &[Group]) -> Vec<f64> {
+    let n = 3 * groups.len();
+    let mut coupling = vec![0.0; n * n];
+    for (g, group) in groups.iter().enumerate() {
+        for (h, other) in groups.iter().enumerate() {
+            let block = transposed_product(&group.k, &other.y).to_cols_array_2d();
+            for (j, column) in block.iter().enumerate() {
+                for (i, value) in column.iter().enumerate() {
+                    coupling[(3 * g + i) * n + 3 * h + j] = *value;
+                }
+            }
+        }
+    }
+    coupling
+}
+
+/// Sum of the products of entries.
+fn dot(a: &DMat3, b: &DMat3) -> f64 {
+    a.x_axis.dot(b.x_axis) + a.y_axis.dot(b.y_axis) + a.z_axis.dot(b.z_axis)
+}
