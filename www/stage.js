@@ -260,9 +260,11 @@ export class Stage extends EventTarget {
       view.set_loop(loop);
       view.set_mesh(mesh.faces, mesh.reference);
       view.set_poses(mesh.poses);
-      view.set_time(-1);
       view.paint_clay();
+      // The whole motion is to be in the picture, not the reference alone.
+      view.set_time(0);
       view.frame();
+      view.set_time(-1);
     });
   }
 

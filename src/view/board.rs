@@ -10,6 +10,9 @@ use glam::Vec3;
 /// Vertices and faces that may be walked through for each frame. A larger mesh is walked through every few frames.
 const WALK: usize = 40_000;
 
+/// How much of a head appears or fades in a frame.
+const FADES: f32 = 0.34;
+
 /// Pins, where they are now, and whether they are seen.
 #[derive(Clone, Debug, Default)]
 pub struct Board {
@@ -18,6 +21,8 @@ pub struct Board {
     spots: Vec<Option<Spot>>,
     /// As many as pins.
     seen: Vec<bool>,
+    /// How far heads that came into sight have appeared, and those that went out of it have faded: 0 to 1.
+    shown: Vec<f32>,
     /// Where pins and camera were when it was last looked what is seen.
     looked: Option<(Camera, Moment, Vec<Option<Vec3>>)>,
     /// Vertices and faces that were saved up for the next walk.
@@ -28,6 +33,7 @@ impl Board {
     /// Puts other pins in place of those there are.
     pub fn set(&mut self, pins: Vec<Pin>) {
         self.seen.resize(pins.len(), true);
+        self.shown.resize(pins.len(), 1.0);
         self.spots = vec![None; pins.len()];
         self.pins = pins;
     }
@@ -86,8 +92,22 @@ impl Board {
         for ((i, _), hidden) in marks.iter().zip(hidden(pins::eye(camera), &points, faces, positions)) {
             self.seen[*i] = !hidden;
         }
+        if self.looked.is_none() {
+            // Pins that were just put there do not come in one after the other.
+            self.shown = self.seen.iter().map(|&s| f32::from(u8::from(s))).collect();
+        }
         self.looked = Some((*camera, moment, self.spots.iter().map(|s| s.map(|s| s.point)).collect()));
         self.saved = 0;
+    }
+
+    /// Lets heads appear and fade by a step; whether there are steps to come.
+    pub fn fade(&mut self) -> bool {
+        let mut on = false;
+        for (shown, &seen) in self.shown.iter_mut().zip(&self.seen) {
+            *shown = if seen { (*shown + FADES).min(1.0) } else { (*shown - FADES).max(0.0) };
+            on |= *shown != f32::from(u8::from(seen));
+        }
+        on
     }
 
     /// What the surface hides is to be looked up again.
@@ -96,14 +116,14 @@ impl Board {
     }
 
     /// Numbers for the shaders, farthest first: see [`Pin::floats`].
-    pub fn floats(&self, window: &Window, pixel_ratio: f32) -> Vec<[f32; FLOATS]> {
+    pub fn floats(&self, pixel_ratio: f32) -> Vec<[f32; FLOATS]> {
         let mut drawn: Vec<(f32, [f32; FLOATS])> = self
             .pins
             .iter()
-            .zip(self.spots())
-            .filter_map(|(pin, (spot, seen))| {
+            .zip(self.spots.iter().zip(&self.shown))
+            .filter_map(|(pin, (spot, &shown))| {
                 let spot = spot.filter(|s| s.depth > 0.0)?;
-                Some((spot.depth, pin.floats(&spot, seen, window, pixel_ratio)))
+                Some((spot.depth, pin.floats(&spot, shown, pixel_ratio)))
             })
             .collect();
         drawn.sort_by(|a, b| b.0.total_cmp(&a.0));
@@ -141,7 +161,8 @@ mod tests {
             board.look(&camera, moment, &window, motion.faces(), motion.shape(0));
             assert!(!board.wants_to_look(&camera, moment));
             assert_eq!(board.spots().map(|s| s.1).collect::<Vec<_>>(), expected);
-            let drawn = board.floats(&window, 2.0);
+            while board.fade() {}
+            let drawn = board.floats(2.0);
             let back_first: Vec<f32> = drawn.iter().map(|d| d[8]).collect();
             assert_eq!(back_first, [0.0, 1.0]);
             assert!(drawn.iter().flatten().all(|x| x.is_finite()));
@@ -154,6 +175,7 @@ mod tests {
         let window = Window { width: 800.0, height: 600.0, insets: [0.0; 4] };
         let moment = motion.at(-1.0, false);
         let mut walks = 0;
+        assert!(!board.fade());
         for turn in 0..20 {
             let camera = Camera { yaw: 0.1 * turn as f32, ..Camera::default() };
             board.place(&motion, moment, &[], &camera, &window, 2.0);

@@ -15,7 +15,7 @@ pub const FLOATS: usize = 12;
 /// Radius of a head, CSS pixels, where neither of the limits holds.
 const RADIUS: f32 = 11.0;
 /// A head is at least and at most this large, in radii of the figure.
-const LIMITS: [f32; 2] = [0.006, 0.075];
+const LIMITS: [f32; 2] = [0.006, 0.055];
 /// Heads of chosen pins and of the one under the pointer are larger.
 const SELECTED: f32 = 1.12;
 const HOVERED: f32 = 1.1;
@@ -122,9 +122,9 @@ impl Pin {
         Spot { point, x: cx + from.dot(right) * scale, y: cy - from.dot(up) * scale, depth, radius: head }
     }
 
-    /// The numbers for the shaders: point, radius in device pixels, linear colour, state, then 1 if the surface does
-    /// not hide it, 1 if chosen, 1 if under the pointer, and the head's radius in the world.
-    pub fn floats(&self, spot: &Spot, seen: bool, window: &Window, pixel_ratio: f32) -> [f32; FLOATS] {
+    /// The numbers for the shaders: point, radius in device pixels, linear colour, state, then how much of the head is
+    /// `shown` (0 where the surface hides it, to 1), 1 if chosen, 1 if under the pointer, and 0.
+    pub fn floats(&self, spot: &Spot, shown: f32, pixel_ratio: f32) -> [f32; FLOATS] {
         let [x, y, z] = spot.point.to_array();
         let [r, g, b] = srgb_to_linear(colour(self.colour)).to_array();
         let flag = |on: bool| f32::from(u8::from(on));
@@ -133,8 +133,8 @@ impl Pin {
             State::Proposed => 1.0,
             State::Missing => 2.0,
         };
-        let (radius, size) = (spot.radius * pixel_ratio, spot.world(window));
-        [x, y, z, radius, r, g, b, state, flag(seen), flag(self.selected), flag(self.hovered), size]
+        let radius = spot.radius * pixel_ratio;
+        [x, y, z, radius, r, g, b, state, shown, flag(self.selected), flag(self.hovered), 0.0]
     }
 }
 
@@ -240,7 +240,7 @@ mod tests {
             pin.spot(Vec3::ZERO, &camera, &WINDOW, 1.0)
         };
         assert_eq!(head(2.0).radius, RADIUS);
-        assert_eq!(head(5.0).radius, RADIUS);
+        assert_eq!(head(4.0).radius, RADIUS);
         let far = head(60.0);
         assert!(far.radius < RADIUS && (far.world(&WINDOW) - LIMITS[1]).abs() < 1e-3);
         let near = head(0.4);

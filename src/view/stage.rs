@@ -416,24 +416,23 @@ impl Stage {
     }
 
     /// Places the pins for a frame and looks which of them the surface hides; for large meshes only every few frames.
-    /// Whether that is still to be looked up, in a frame to come. `maps` are the skin's at this moment.
+    /// Whether there is more to do in a frame to come. `maps` are the skin's at this moment.
     pub fn look(&mut self, maps: &[Map]) -> bool {
         let moment = self.moment();
         self.place_pins(moment, maps);
-        if !self.board.wants_to_look(&self.camera, moment) {
-            return false;
+        let size = self.motion.vertices() + self.motion.faces().len();
+        let wants = self.board.wants_to_look(&self.camera, moment);
+        let looks = wants && self.board.can_look(size);
+        if looks {
+            self.positions(moment);
+            self.board.look(&self.camera, moment, &self.window, self.motion.faces(), &self.positions);
         }
-        if !self.board.can_look(self.motion.vertices() + self.motion.faces().len()) {
-            return true;
-        }
-        self.positions(moment);
-        self.board.look(&self.camera, moment, &self.window, self.motion.faces(), &self.positions);
-        false
+        self.board.fade() || wants != looks
     }
 
     /// Numbers of the pins for the shaders: see [`Board::floats`].
     pub fn pin_floats(&self) -> Vec<[f32; pins::FLOATS]> {
-        self.board.floats(&self.window, self.pixel_ratio)
+        self.board.floats(self.pixel_ratio)
     }
 
     /// Radius of the figure in its first pose.

@@ -3,7 +3,7 @@
 struct Pin {
     @location(0) point: vec4f,      // where it sticks; w: radius, device pixels
     @location(1) enamel: vec4f,     // linear colour; w: 0 fixed, 1 proposed, 2 missing
-    @location(2) state: vec4f,      // 1 if in sight; 1 if chosen; 1 if under the pointer; radius in the world
+    @location(2) state: vec4f,      // how much of the head is shown; 1 if chosen; 1 if under the pointer
 }
 
 struct Head {
@@ -20,13 +20,8 @@ const REACH = 1.9;
 fn head(i: u32, pin: Pin) -> Head {
     let corner = vec2f(f32(i & 1u), f32(i >> 1u)) * 2.0 - 1.0;
     let middle = stage.view * vec4f(pin.point.xyz, 1.0);
-    let towards = normalize(stage.eye.xyz - pin.point.xyz);
-    // As deep as the front of the head, which sticks out of the surface.
-    let front = stage.view * vec4f(pin.point.xyz + towards * pin.state.w * 1.05, 1.0);
     let aside = corner * REACH * pin.point.w * 2.0 / stage.window.xy * middle.w;
-    let depth = clamp(front.z / max(front.w, 1e-9), 0.0, 1.0);
-    let position = vec4f(middle.xy + aside, depth * middle.w, middle.w);
-    return Head(position, corner * REACH, pin.enamel, pin.state, pin.point.w);
+    return Head(vec4f(middle.xy + aside, 0.0, middle.w), corner * REACH, pin.enamel, pin.state, pin.point.w);
 }
 
 // How much of a pixel is inside an edge at `edge`; all lengths in radii.
@@ -65,7 +60,7 @@ fn pin_fragment(in: Head) -> @location(0) vec4f {
     // Dome: flat in the middle, falling to the rim; the rim bulges.
     let dir = in.at / max(r, 1e-6);
     let t = clamp(r / (1.0 - rim_width), 0.0, 1.0);
-    let dome = normalize(vec3f(dir * t * t * 0.75, 1.0));
+    let dome = normalize(vec3f(dir * t * (0.35 + 0.85 * t * t), 1.0));
     let across = clamp((r - (1.0 - rim_width)) / rim_width, 0.0, 1.0) * 2.0 - 1.0;
     let ring = normalize(vec3f(dir * across * 1.1, 1.0));
     let enamel = lit_enamel(in.enamel.rgb, dome);
@@ -92,13 +87,15 @@ fn pin_fragment(in: Head) -> @location(0) vec4f {
         // An empty setting: the rim in the enamel's colour and nothing in it.
         let band = clamp(inside(1.0, r, px) - inside(0.74, r, px), 0.0, 1.0);
         colour = mix(ink, in.enamel.rgb * 0.85, band * (1.0 - 0.5 * clamp(foot, 0.0, 1.0)));
-        alpha = edge * mix(0.12, 1.0, band);
+        colour = mix(metal, colour, band);
+        alpha = edge * mix(0.65, 1.0, band);
     }
 
     // Around the head: a soft shadow away from the light, and a ring around what is chosen or pointed at.
     let fall = vec2f(dot(stage.key.xyz, stage.right.xyz), dot(stage.key.xyz, stage.up.xyz)) * -0.16;
     let shadow_r = length(in.at - fall);
-    var shade = (1.0 - smoothstep(0.75, 1.45, shadow_r)) * select(0.42, 0.2, proposed || missing);
+    let open = proposed || missing;
+    let shade = (1.0 - smoothstep(0.75, 1.45, shadow_r)) * select(0.42, 0.3 * (1.0 - edge), open);
     let halo_at = 1.34;
     let halo = clamp(1.0 - max(abs(r - halo_at) * px - 0.13 * px, 0.0), 0.0, 1.0) * max(chosen, 0.55 * hovered);
     let halo_edge = clamp(1.0 - max(abs(abs(r - halo_at) - 0.15) * px - 0.35, 0.0), 0.0, 1.0) * chosen;
@@ -109,23 +106,10 @@ fn pin_fragment(in: Head) -> @location(0) vec4f {
     out = vec4f(mix(out.rgb, encode(ink), 0.55 * halo_edge), mix(out.a, 1.0, 0.55 * halo_edge));
     out = vec4f(mix(out.rgb, ring_colour, halo), mix(out.a, 1.0, halo));
     out = vec4f(mix(out.rgb, encode(colour), alpha), mix(out.a, 1.0, alpha));
-    if out.a < 0.004 {
-        discard;
-    }
-    return out;
+    return out * in.state.x;
 }
 
 // What shines through the surface where it hides a pin: a faint ring.
-@vertex
-fn ghost_vertex(@builtin(vertex_index) i: u32, pin: Pin) -> Head {
-    var out = head(i, pin);
-    if pin.state.x > 0.5 {
-        // Nothing to see.
-        out.position = vec4f(0.0, 0.0, 0.0, 1.0);
-    }
-    return out;
-}
-
 @fragment
 fn ghost_fragment(in: Head) -> @location(0) vec4f {
     let r = length(in.at);
@@ -137,8 +121,7 @@ fn ghost_fragment(in: Head) -> @location(0) vec4f {
     var out = vec4f(encode(in.enamel.rgb) * core, core);
     out = vec4f(mix(out.rgb, encode(stage.line_colour.rgb), 0.35 * dark), mix(out.a, 1.0, 0.35 * dark));
     out = vec4f(mix(out.rgb, encode(in.enamel.rgb), ring), mix(out.a, 1.0, ring));
-    if out.a < 0.004 {
-        discard;
-    }
-    return out * strong;
+    let halo = clamp(1.0 - max(abs(r - 1.34) * px - 0.07 * px, 0.0), 0.0, 1.0) * in.state.y;
+    out = vec4f(mix(out.rgb, vec3f(0.98), halo), mix(out.a, 1.0, halo));
+    return out * strong * (1.0 - in.state.x);
 }

@@ -111,16 +111,18 @@ impl Pipelines {
             samples: 1,
             quads: false,
         };
-        let pin = |vertex, fragment, depth| {
+        let pin = |fragment| {
             let (module, groups, fragment) = (&pins, &[frame][..], Some((fragment, gpu.format)));
-            pipeline(gpu, &Pass { module, groups, vertex, fragment, depth: Some(depth), samples: SAMPLES, quads: true })
+            // Whether the surface hides them is known already.
+            let depth = Some(CompareFunction::Always);
+            pipeline(
+                gpu,
+                &Pass { module, groups, vertex: "pin_vertex", fragment, depth, samples: SAMPLES, quads: true },
+            )
         };
         Self {
             skin: pipeline(gpu, &skinned),
-            pins: [
-                pin("ghost_vertex", "ghost_fragment", CompareFunction::Always),
-                pin("pin_vertex", "pin_fragment", CompareFunction::LessEqual),
-            ],
+            pins: [pin("ghost_fragment"), pin("pin_fragment")],
             shadow: drawn("shadow_vertex", None),
             ground: drawn("ground_vertex", Some(("ground_fragment", DATA))),
             depth: drawn("depth_vertex", Some(("depth_fragment", DATA))),
