@@ -2,7 +2,6 @@
  * The worker: starts the engine from the compiled module that the page sends first, then answers its messages,
  * one at a time and in order. See engine.js for the messages.
  */
-import * as fake from './fake.js';
 import init, { Engine } from '../pkg/worker.js';
 
 /** Progress is told at most this often, in milliseconds. */
@@ -14,17 +13,24 @@ const operations = {
   start: async ({ module }) => {
     await init({ module_or_path: module });
     engine = new Engine();
-    return { ...Engine.about(), keypoints: { candidates: 100, error: 0.03, points: null, stop: 'error', literal: false, lambda: 0.5, 'gamma-rotation': 1, 'gamma-shear': 0.1 }, transfer: { method: 'biharmonic' } };
+    return Engine.about();
   },
-  open: ({ files, options }) => fake.note('source')(engine.open(files, options)),
-  zoo: ({ recipe }) => fake.note('source')(engine.zoo(recipe)),
-  target: ({ recipe, files, options }) => { const r = recipe ? engine.zoo(recipe) : engine.open(files, options); return fake.note('target')(r); },
-  restore_target: ({ kept }) => fake.note('target')(kept) && undefined,
-  ...fake.operations,
+  open: ({ files, options }) => engine.open(files, options),
+  zoo: ({ recipe }) => engine.zoo(recipe),
   restore: ({ kept }) => engine.restore(kept),
   segment: ({ parameters }, progress) => engine.segment(parameters, progress),
   parts: ({ parameters, parts }, progress) => engine.parts(parameters, parts, progress),
   export: ({ labels, colours }) => engine.export(labels, colours),
+  keypoints: ({ parameters }, progress) => engine.keypoints(parameters, progress),
+  fit: ({ points, parameters }) => engine.fit(points, parameters),
+  target: ({ files, recipe, options }) => (recipe ? engine.target_zoo(recipe) : engine.target(files, options)),
+  restore_target: ({ kept }) => engine.restore_target(kept),
+  drop_target: () => engine.drop_target(),
+  propose: ({ points, known }) => engine.propose(points, known),
+  target_weights: ({ points }) => engine.target_weights(points),
+  landmarks: ({ source, target }) => Engine.landmarks(source, target),
+  transfer: ({ pairs, parameters, quick }, progress) => engine.transfer(pairs, parameters, quick, progress),
+  export_transfer: ({ form }) => engine.export_transfer(form),
 };
 
 let queue = Promise.resolve();
