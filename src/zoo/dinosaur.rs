@@ -19,7 +19,7 @@ const TAIL_JOINTS: [[f64; 2]; 6] =
 const LEG: [[f64; 3]; 5] =
     [[0.15, 1.10, 0.0], [0.20, 0.74, 0.20], [0.185, 0.35, -0.12], [0.185, 0.075, 0.02], [0.205, 0.02, 0.31]];
 /// Shoulder, elbow, wrist, claws.
-const ARM: [[f64; 3]; 4] = [[0.165, 1.17, 0.70], [0.225, 0.99, 0.70], [0.215, 0.93, 0.87], [0.195, 0.87, 1.01]];
+const ARM: [[f64; 3]; 4] = [[0.165, 1.17, 0.70], [0.225, 0.99, 0.70], [0.215, 0.93, 0.87], [0.195, 0.85, 1.05]];
 
 const LEG_STATIONS: &[Station] = &[
     station(0.130, 1.13, -0.02, 0.200, 0.68),
@@ -116,17 +116,17 @@ fn arms(body: &mut Body) {
             station(0.226, 0.995, 0.715, 0.048, 1.0),
             station(0.222, 0.96, 0.79, 0.044, 1.0),
             station(0.215, 0.93, 0.87, 0.036, 1.0),
-            station(0.208, 0.905, 0.92, 0.038, 1.0),
+            station(0.208, 0.905, 0.93, 0.042, 1.0),
         ],
     );
-    // Two claws.
-    for (y, out) in [(0.025, 0.018), (-0.025, -0.018)] {
-        let at = |x: f64, height: f64, z: f64, radius: f64| station(x + out, height + y, z, radius, 1.0);
-        body.limbs(
-            &["* hand"],
-            0.02,
-            &[at(0.205, 0.90, 0.93, 0.024), at(0.198, 0.885, 0.98, 0.021), at(0.190, 0.85, 1.015, 0.013)],
-        );
+    // Two claws, spread.
+    for side in [1.0, -1.0] {
+        let at = |along: f64, apart: f64, radius: f64| {
+            let from = DVec3::new(0.207, 0.903, 0.93).lerp(DVec3::new(0.192, 0.840, 1.055), along);
+            let at = from + side * apart * DVec3::new(0.6, 0.8, 0.0);
+            station(at.x, at.y, at.z, radius, 1.0)
+        };
+        body.limbs(&["* hand"], 0.015, &[at(0.0, 0.014, 0.030), at(0.5, 0.040, 0.027), at(1.0, 0.055, 0.019)]);
     }
 }
 
@@ -188,9 +188,9 @@ fn gait(skeleton: &Skeleton, phase: f64) -> Vec<Rigid> {
     }
     for (side, sign) in [("left", 1.0), ("right", -1.0)] {
         let own = if sign > 0.0 { 0.0 } else { 0.5 };
-        turns.set(&format!("{side} upper arm"), pitch(12.0 * sign * stride - 4.0));
-        turns.set(&format!("{side} forearm"), pitch(-4.0 + 11.0 * wave(phase + own + 0.15)));
-        turns.set(&format!("{side} hand"), pitch(10.0 * wave(phase + own)));
+        turns.set(&format!("{side} upper arm"), pitch(14.0 * sign * stride - 4.0));
+        turns.set(&format!("{side} forearm"), pitch(-4.0 + 13.0 * wave(phase + own + 0.15)));
+        turns.set(&format!("{side} hand"), pitch(15.0 * wave(phase + own)));
         let bone = |name: &str| skeleton.find(&format!("{side} {name}"));
         if let (Some(upper), Some(lower), middle, Some(foot)) =
             (bone("thigh"), bone("shank"), bone("metatarsus"), bone("toes"))

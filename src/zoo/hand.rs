@@ -68,8 +68,9 @@ const THUMB_BONES: [&str; 3] = ["thumb 1", "thumb 2", "thumb 3"];
 const CURLED: [f64; 3] = [66.0, 82.0, 46.0];
 /// The same at rest.
 const RELAXED: [f64; 3] = [8.0, 12.0, 8.0];
-/// The same of the thumb.
-const THUMB_CURLED: [f64; 3] = [26.0, 28.0, 40.0];
+/// Where the bones of the thumb turn to, and how far.
+const THUMB_CURLS: [([f64; 3], f64); 3] =
+    [([-1.0, -0.1, 0.0], 42.0), ([-0.1, -1.0, 0.3], 38.0), ([0.1, -1.0, 0.2], 48.0)];
 
 /// How far a finger is curled, by the time since it began.
 const GRASP: Curve = Curve(&[(0.0, 0.0), (0.26, 1.0), (0.44, 1.0), (0.70, 0.0)]);
@@ -143,10 +144,11 @@ impl Finger {
         body.limb(&["palm", one, two, three], 0.035, &stations);
     }
 
-    /// The turn that brings the finger towards the palm.
-    fn flex(&self, degrees: f64) -> DQuat {
-        let along = (DVec3::from(self.at(1.0)) - DVec3::from(self.at(0.0))).normalize();
-        DQuat::from_axis_angle(along.cross(DVec3::NEG_X).normalize(), degrees.to_radians())
+    /// The turn that brings the finger towards the palm, and so many degrees down.
+    fn flex(&self, degrees: f64, down: f64) -> DQuat {
+        let down = pitch(down);
+        let along = down * (DVec3::from(self.at(1.0)) - DVec3::from(self.at(0.0))).normalize();
+        DQuat::from_axis_angle(along.cross(DVec3::NEG_X).normalize(), degrees.to_radians()) * down
     }
 }
 
@@ -176,15 +178,17 @@ fn bend(turns: &mut Turns, curl: impl Fn(f64) -> f64) {
     for finger in &FINGERS {
         let amount = curl(finger.begins);
         for (i, name) in finger.bones.into_iter().enumerate() {
-            turns.set(name, finger.flex(RELAXED[i] + amount * (CURLED[i] - RELAXED[i])));
+            // Spread fingers come together as they curl.
+            let down = if i == 0 { 0.9 * amount * finger.up } else { 0.0 };
+            turns.set(name, finger.flex(RELAXED[i] + amount * (CURLED[i] - RELAXED[i]), down));
         }
     }
-    // The thumb comes last and closes over the fingers.
+    // The thumb comes last: out of the way first, then over the fingers.
     let amount = curl(0.27);
     for (i, name) in THUMB_BONES.into_iter().enumerate() {
         let along = (DVec3::from(THUMB[i + 1]) - DVec3::from(THUMB[i])).normalize();
-        let over = DVec3::new(-0.45, -0.75, 0.35).normalize();
-        turns.set(name, DQuat::from_axis_angle(along.cross(over).normalize(), (amount * THUMB_CURLED[i]).to_radians()));
+        let axis = along.cross(DVec3::from(THUMB_CURLS[i].0)).normalize();
+        turns.set(name, DQuat::from_axis_angle(axis, (amount * THUMB_CURLS[i].1).to_radians()));
     }
 }
 

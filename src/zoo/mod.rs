@@ -15,6 +15,7 @@ pub mod field;
 pub mod gait;
 pub mod hand;
 pub mod horse;
+pub mod landmarks;
 pub mod limb;
 pub mod mesher;
 pub mod person;
@@ -26,6 +27,7 @@ pub mod weights;
 
 use crate::sequence::{Pose, Sequence};
 pub use correspondence::correspondences;
+pub use landmarks::{landmark_pairs, landmarks};
 
 use body::Body;
 use glam::DVec3;
