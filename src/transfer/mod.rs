@@ -1,1 +1,3 @@
 //! One mesh made to move like another.
+
+pub mod propose;
