@@ -4,6 +4,7 @@ mod input;
 mod inspect;
 mod output;
 mod segment;
+mod transfer;
 mod zoo;
 
 use clap::{Parser, Subcommand};
@@ -23,6 +24,8 @@ enum Command {
     Inspect(inspect::Inspect),
     /// Cut an animated mesh into near-rigid parts
     Segment(segment::Segment),
+    /// Make another mesh move like an animated one
+    Transfer(transfer::Transfer),
     /// Make a creature
     Zoo(zoo::Zoo),
 }
@@ -40,6 +43,7 @@ fn main() -> ExitCode {
     let result = match Arguments::parse().command {
         Command::Inspect(command) => command.run(),
         Command::Segment(command) => command.run(),
+        Command::Transfer(command) => command.run(),
         Command::Zoo(command) => command.run(),
     };
     match result {
