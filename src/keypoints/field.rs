@@ -84,7 +84,8 @@ impl Energy {
             energy.start.push(energy.column.len() as u32);
         }
         for v in 0..n {
-            energy.diagonal[v] = energy.row(v).find(|e| e.0 as usize == v).map_or(0.0, |e| e.1);
+            let diagonal = energy.row(v).find(|e| e.0 as usize == v).map_or(0.0, |e| e.1);
+            energy.diagonal[v] = diagonal;
         }
         energy
     }

@@ -26,8 +26,10 @@ mod result;
 mod search;
 mod select;
 mod surface;
+mod thin;
 mod watch;
 
 pub use parameters::{Parameters, Stop};
 pub use result::{Fitted, KeyPointError, KeyPoints, Replacement, Step, Tried};
 pub use select::{fit_all, select};
+pub use thin::thinned;
