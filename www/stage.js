@@ -9,6 +9,8 @@ import { h } from './dom.js';
 import { Pace } from './pace.js';
 import init, { Viewport } from '../pkg/page.js';
 
+export { link } from './linked.js';
+
 /** How long to wait before the next attempt after a device was lost, in milliseconds. */
 const REBUILD_AFTER = 400;
 /** How often to look for a lost device while nothing is drawn, in milliseconds. */
@@ -45,6 +47,8 @@ export class Stage extends EventTarget {
     this.flowing = null;
     /** Whether the picture that is shown is drawn in full, even where frames are slow. */
     this.settled = false;
+    /** Whether the host has another size than the canvas was made for. */
+    this.unfit = false;
     /** Whether the host has room for a picture. */
     this.visible = false;
     /** Counts what is to be seen, time and camera aside; of it what is on the screen, and what the frames show that are not yet. */
@@ -93,6 +97,7 @@ export class Stage extends EventTarget {
 
   /** Tries the backends in turn, each on a canvas of its own. */
   async #build() {
+    if (this.closing.signal.aborted) return;
     for (const backend of await backends(this.forced)) {
       const canvas = h('canvas', { tabindex: '0', role: 'img', 'aria-label': this.label ?? 'The creature' });
       const previous = this.canvas;
@@ -101,7 +106,10 @@ export class Stage extends EventTarget {
       this.canvas = canvas;
       try {
         const view = await Viewport.create(canvas, backend);
-        if (this.closing.signal.aborted) return view.free();
+        if (this.closing.signal.aborted) {
+          view.free();
+          return;
+        }
         this.view = view;
         this.backend = this.view.backend();
         break;
@@ -110,10 +118,8 @@ export class Stage extends EventTarget {
         this.view = null;
       }
     }
-    if (this.closing.signal.aborted) return undefined;
     if (this.view) this.#restore();
     this.dispatchEvent(new Event(this.view ? 'canvas' : 'no-gpu'));
-    return undefined;
   }
 
   /** Builds the picture again from what is written down. */
@@ -157,8 +163,10 @@ export class Stage extends EventTarget {
     this.#draw(performance.now());
   }
 
+  /** While the graphics are behind, the old picture is stretched rather than one more asked for. */
   #resize() {
-    this.#fit();
+    this.unfit = this.view?.under_way() > 1;
+    if (!this.unfit) this.#fit();
     this.#frameUnlessMoved();
   }
 
@@ -171,8 +179,11 @@ export class Stage extends EventTarget {
     const underWay = this.view.under_way();
     while (this.waiting.length > underWay) this.shown = this.waiting.shift();
     if (!this.pace.allows(now, underWay)) return;
+    if (this.unfit) this.#resize();
     this.#settle(now);
     this.#draw(now);
+    // What was asked for may be what was there.
+    if (!this.waiting.length && !this.view.stale()) this.shown = this.wanted;
   }
 
   /** Draws if anything has changed. Without a change nothing is spent. */
@@ -478,35 +489,6 @@ export class Stage extends EventTarget {
     if (!blob) throw new Error('The browser could not save the picture.');
     return blob;
   }
-}
-
-/**
- * Lets two pictures look from the same side, each at its own figure.
- * @param {Stage} a @param {Stage} b turns as `a` is turned
- * @returns {() => void} ends it
- */
-export function link(a, b) {
-  let passing = false;
-  const ends = [[a, b], [b, a]].map(([from, to]) => {
-    const pass = ({ method, values }) => {
-      if (passing) return;
-      passing = true;
-      if (method === 'camera') [to.camera] = values;
-      else if (method === 'zoom') to.move('zoom', values[0], ...sameAside(from, to, values.slice(1)));
-      else to.move(method, ...values);
-      passing = false;
-    };
-    from.addEventListener('camera', pass);
-    return () => from.removeEventListener('camera', pass);
-  });
-  b.turn = a.turn;
-  return () => ends.forEach((end) => end());
-}
-
-/** The point that is as far from the middle of one picture as a point is from that of another. */
-function sameAside(from, to, point) {
-  const [before, after] = [from.middle, to.middle];
-  return point.map((value, axis) => value - before[axis] + after[axis]);
 }
 
 /** Yaw and pitch of a camera's numbers. */

@@ -241,7 +241,7 @@ mod tests {
         };
         assert_eq!(head(2.0).radius, RADIUS);
         assert_eq!(head(4.0).radius, RADIUS);
-        let far = head(60.0);
+        let far = head(20.0);
         assert!(far.radius < RADIUS && (far.world(&WINDOW) - LIMITS[1]).abs() < 1e-3);
         let near = head(0.4);
         assert!(near.radius > RADIUS && (near.world(&WINDOW) - LIMITS[0]).abs() < 1e-4);
