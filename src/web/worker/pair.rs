@@ -46,8 +46,9 @@ impl Engine {
 
     /// Proposes where `points` of the source lie on the target; `known` has a vertex or −1 for each of them.
     pub fn propose(&mut self, points: &[u32], known: &[i32]) -> Reply {
+        let retained = self.proposer.take();
         let (source, target) = (self.open_sequence()?, self.open_target()?);
-        let proposer = match self.proposer.take() {
+        let proposer = match retained {
             Some(proposer) => proposer,
             None => Proposer::new(source.faces(), source.reference(), target.faces(), target.reference())
                 .map_err(sentence)?,
@@ -66,8 +67,9 @@ impl Engine {
 
     /// The weights of some vertices of the target, #V rows × the number of them.
     pub fn target_weights(&mut self, handles: &[u32]) -> Reply {
+        let retained = self.target_field.take();
         let target = self.open_target()?;
-        let field = match self.target_field.take() {
+        let field = match retained {
             Some(field) => field,
             None => Biharmonic::new(target.faces(), target.reference()).map_err(sentence)?,
         };

@@ -45,7 +45,7 @@ fn describe(weights: &Weights, groups: &[u32], fits: &[Fit]) -> Reply {
     Ok(reply)
 }
 
-fn steps(found: &KeyPoints) -> Result<Array, JsValue> {
+fn steps(found: &KeyPoints) -> Reply {
     let steps = Array::new();
     for step in &found.steps {
         let item: JsValue = Object::new().into();
@@ -57,5 +57,5 @@ fn steps(found: &KeyPoints) -> Result<Array, JsValue> {
         put(&item, "error", &step.error.into())?;
         steps.push(&item);
     }
-    Ok(steps)
+    Ok(steps.into())
 }
