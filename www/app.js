@@ -9,6 +9,7 @@ import { collect, fetchSource } from './files.js';
 import { History } from './history.js';
 import { KeyPoints, MOST_POINTS } from './keypoints.js';
 import { PARTS_VIEW, stepNamed } from './steps/index.js';
+import { KEY_POINT_VIEWS } from './steps/point-views.js';
 import { Target } from './target.js';
 import { Transfer } from './transfer.js';
 import { Work } from './work.js';
@@ -370,7 +371,8 @@ export class App extends EventTarget {
     if (!this.sequence) return;
     this.stage.unmark();
     const view = viewOf(this.step, this.view);
-    if (stepNamed(this.step).points || this.result) view.paint(this);
+    if (stepNamed(this.step).pair && this.target.sequence && !stepNamed(this.step).points) KEY_POINT_VIEWS[0].paint(this);
+    else if (stepNamed(this.step).points || this.result) view.paint(this);
     else {
       this.stage.boundaries = false;
       this.stage.paint(['paint_clay']);

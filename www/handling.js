@@ -47,7 +47,10 @@ export function handling(app, side, picture) {
         drop() {
           app.held = false;
           app.history.rest();
-          if (moved && side === 'target') app.target.proposing();
+          if (!moved || side !== 'target') return;
+          app.target.proposing();
+          // While it was held, each motion began where the last one ended.
+          if (app.transfer.motion?.quick) app.transfer.move();
         },
       };
     },

@@ -192,7 +192,7 @@ export class KeyPoints {
     if (!points.length) return;
     const { run } = app.doc;
     const known = run && this.untouched && points.length === run.key_points.length;
-    const answer = known ? run : await app.work.run('points', 'weights', () => app.engine.call('fit', { points }));
+    const answer = known ? run : await app.work.run('points', 'weights', () => app.engine.call('fit', { points, parameters: this.parameters }));
     if (!answer) return;
     const { weights, groups, energies } = answer;
     this.fitted = { points, weights, groups, energies, error: known ? run.errors.at(-1) : answer.error };

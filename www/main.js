@@ -160,7 +160,7 @@ window.sinew = {
     tally: app.target.tally,
     next: app.target.next,
     selected: app.selected,
-    moves: app.transfer.motion && { method: app.transfer.method, pairs: app.transfer.motion.pairs, handles: app.transfer.motion.handles },
+    moves: app.transfer.motion && { method: app.transfer.method, pairs: app.transfer.motion.pairs, handles: app.transfer.motion.handles, seconds: app.transfer.motion.took },
     undo: app.history.past.length,
     redo: app.history.future.length,
     drawn: stage.drawn && (app.second?.drawn ?? true),

@@ -39,11 +39,13 @@ export function pins(app, side, stage, host) {
   const layer = h('div', { class: 'pin-numbers', 'aria-hidden': 'true' });
   host.append(layer);
   let known = '';
+  let mesh = null;
   const update = () => {
     const list = pinsOf(app, side);
-    const key = JSON.stringify([list, stage.kept.mesh?.reference.length]);
-    if (key === known) return;
+    const key = JSON.stringify(list);
+    if (key === known && mesh === stage.kept.mesh) return;
     known = key;
+    mesh = stage.kept.mesh;
     stage.pins = list.map(({ pin }) => pin);
     show(layer, ...list.map(({ index, pin }) => h('span', { class: pin.selected ? 'selected number' : 'number', 'data-state': pin.state }, String(index + 1))));
     place();

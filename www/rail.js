@@ -6,7 +6,7 @@ import { STEPS } from './steps/index.js';
 export function rail(host, app) {
   const items = STEPS.map((step) => {
     const summary = h('span', { class: 'small faint' });
-    const button = h('button', { type: 'button', class: 'step-button', on: { click: () => go(app, step.id) } },
+    const button = h('button', { type: 'button', class: 'step-button', id: `step-${step.id}`, on: { click: () => go(app, step.id) } },
       h('span', { class: 'step-title' }, step.title), summary);
     return { step, summary, button };
   });

@@ -9,6 +9,8 @@ import { pins } from './pins.js';
 import { link } from './stage.js';
 import { stepNamed } from './steps/index.js';
 
+/** How far a figure stays away from the other's picture, in pixels. */
+const INNER = 28;
 const NARROW = matchMedia('(max-width: 720px)');
 
 export class Studio {
@@ -138,6 +140,8 @@ export class Studio {
       if (host.hidden) return;
       const box = host.getBoundingClientRect();
       const insets = [free.left - box.left, free.top - box.top, box.right - free.right, box.bottom - free.bottom].map((inset) => Math.max(0, Math.round(inset)));
+      // What is in the middle of the window stays clear of the other figure.
+      if (this.two && !this.hosts[1 - i].hidden) insets[i ? 0 : 2] += INNER;
       const stage = i ? this.app.second : this.app.stage;
       if (stage) stage.insets = insets;
       this.captions[i].style.setProperty('left', `${(insets[0] + box.width - insets[2]) / 2}px`);

@@ -18,6 +18,9 @@ export class Target {
     /** The sequence that the engine knows. */
     this.known = null;
     this.proposing = latest(() => this.#propose());
+    /** The weights of the points on the target, once they were looked at: `{points, targets, weights}`. */
+    this.field = null;
+    this.weighing = latest(() => this.#weigh());
   }
 
   get sequence() {
@@ -123,6 +126,28 @@ export class Target {
     this.proposing();
   }
 
+  /** Sees to it that the weights on the target are known. */
+  weigh() {
+    const { paired, field } = this;
+    const same = field && paired.length === field.targets.length && paired.every(({ target }, i) => target === field.targets[i]);
+    if (paired.length && !same) this.weighing();
+  }
+
+  get paired() {
+    return this.app.keypoints.used.filter(({ target }) => target != null);
+  }
+
+  async #weigh() {
+    const { app, paired } = this;
+    const { target } = app.doc;
+    const targets = paired.map((point) => point.target);
+    if (!target || !targets.length || new Set(targets).size < targets.length) return;
+    const weights = await app.work.run('weights', 'weights', () => app.engine.call('target_weights', { points: targets }));
+    if (!weights || app.doc.target !== target) return;
+    this.field = { points: paired.map(({ source }) => source), targets, weights };
+    if (app.view === 'weights') app.paint();
+  }
+
   react(before, after) {
     const { app } = this;
     if (before.target !== after.target) {
@@ -134,8 +159,10 @@ export class Target {
         told.catch(() => {});
       }
       this.next = -1;
+      this.field = null;
       app.changed('target');
     }
+    if (app.view === 'weights') this.weigh();
     const used = after.points.slice(0, after.count);
     if (after.target && used.some(({ state }) => state === 'missing')) this.proposing();
   }
@@ -150,10 +177,10 @@ export class Target {
       return;
     }
     const points = used.map(({ source }) => source);
-    const known = used.map(({ state, target: vertex }) => (state === 'placed' ? vertex : null));
+    const known = used.map(({ state, target: vertex }) => (state === 'placed' ? vertex : -1));
     const answer = await app.work.run('pairs', 'looking for the points', () => app.engine.call('propose', { points, known }));
     if (!answer || app.doc.target !== target) return;
-    const found = new Map(points.map((source, i) => [source, answer.points[i]]));
+    const found = new Map(points.map((source, i) => [source, { target: answer.targets[i], confidence: answer.confidences[i] }]));
     this.next = answer.next ?? -1;
     app.amend({ points: app.doc.points.map((point) => proposed(point, found.get(point.source))) });
   }

@@ -44,12 +44,16 @@ export class Transfer {
       return;
     }
     const started = performance.now();
-    const parameters = { ...app.about.transfer, method: this.method };
-    const answer = await app.work.run('motion', 'moving the target', (progress) =>
-      app.engine.call('transfer', { pairs, parameters }, { progress }));
+    const message = {
+      pairs: pairs.flatMap(({ source, target: vertex }) => [source, vertex]),
+      parameters: { ...app.about.transfer, method: this.method },
+      quick: app.held,
+    };
+    const answer = await app.work.run('motion', 'moving the target', (progress) => app.engine.call('transfer', message, { progress }));
     if (!answer || app.doc.target !== target) return;
     answer.took = (performance.now() - started) / 1000;
     answer.pairs = pairs.length;
+    answer.quick = message.quick;
     this.#set(answer);
   }
 
@@ -62,7 +66,7 @@ export class Transfer {
   /**
    * The moving target as a GLB, made once.
    * @param {'exact'|'light'} form
-   * @returns {Promise<{blob: Blob, error: number}|undefined>}
+   * @returns {Promise<{blob: Blob, error: number, rms: number}|undefined>} errors that the form adds, over the diagonal
    */
   async file(form) {
     const { app, motion } = this;
@@ -71,7 +75,7 @@ export class Transfer {
       const answer = await app.work.run(`export ${form}`, 'writing the file', (progress) =>
         app.engine.call('export_transfer', { form }, { progress }));
       if (!answer || this.motion !== motion) return undefined;
-      this.files.set(form, { blob: new Blob([answer.bytes], { type: 'model/gltf-binary' }), error: answer.error });
+      this.files.set(form, { blob: new Blob([answer.bytes], { type: 'model/gltf-binary' }), error: answer.error, rms: answer.rms });
       app.changed('files');
     }
     return this.files.get(form);

@@ -49,7 +49,7 @@ function build(app) {
 
 function detail(about, file) {
   if (!file) return about;
-  const off = file.error > 0 ? ` It is off by ${number(1000 * file.error, 2)} ‰ of its size at most.` : '';
+  const off = file.error > 0 ? ` Off by ${number(1000 * file.rms, 2)} ‰ of its size, ${number(1000 * file.error, 2)} ‰ at most.` : '';
   return `${about}${off} ${bytes(file.blob.size)}.`;
 }
 

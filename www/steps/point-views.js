@@ -20,13 +20,6 @@ const shownPoint = (app) => Math.max(0, app.selected);
 /** One column of a table with `count` columns. */
 const column = (values, count, index) => Float32Array.from({ length: values.length / count }, (_, row) => values[row * count + index]);
 
-/** The weights of one handle of a skin. @returns {Float32Array} #V */
-function handleWeights({ indices, weights, K }, handle) {
-  const field = new Float32Array(weights.length / K);
-  for (let i = 0; i < weights.length; i++) if (indices[i] === handle) field[Math.floor(i / K)] += weights[i];
-  return field;
-}
-
 const points = {
   id: 'points',
   label: 'Points',
@@ -44,9 +37,10 @@ const weights = {
     const { current } = app.keypoints;
     const index = shownPoint(app);
     if (current) app.stage.paint(['paint_vertices', column(current.weights, current.points.length, index), 0, 1, WEIGHT]);
-    const { motion } = app.transfer;
-    const handle = motion?.sources.indexOf(app.keypoints.used[index]?.source) ?? -1;
-    if (handle >= 0) app.second?.paint(['paint_vertices', handleWeights(motion, handle), 0, 1, WEIGHT]);
+    const { field } = app.target;
+    const handle = field?.points.indexOf(app.keypoints.used[index]?.source) ?? -1;
+    if (handle >= 0) app.second?.paint(['paint_vertices', column(field.weights, field.points.length, handle), 0, 1, WEIGHT]);
+    app.target.weigh();
   },
   legend: (app) => ({
     kind: 'scalar',

@@ -62,7 +62,7 @@ function introduction(app) {
 function motionFacts({ transfer: { motion }, target: { sequence }, sequence: source }) {
   return facts([
     ['Pairs', String(motion.pairs)],
-    ['Handles', String(motion.handles), 'The key points, and further points that Sinew adds where they help'],
+    motion.bones > 0 && ['Bones', String(motion.bones), 'Near-rigid pieces of the source that were found in its motion'],
     ['Vertices', count(sequence.sizes.vertices)],
     ['Poses', count(source.sizes.poses)],
     ['Computed in', duration(motion.took), motion.seconds.map(([name, value]) => `${name}: ${Math.round(1000 * value)} ms`).join('\n')],
