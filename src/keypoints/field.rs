@@ -12,7 +12,11 @@
 use crate::mesh::laplacian::Laplacian;
 
 /// Rounds of mending; vertices are set free only in the first half of them, so that no cycle lasts.
-const ROUNDS: usize = 12;
+const ROUNDS: usize = 8;
+
+/// Vertices are held if they are below minus this, and let go if they alone would rise by this share of it.
+const SLACK: f64 = 1e-3;
+const RISE: f64 = 0.1;
 
 /// A vertex with less area than this share of the mean is taken to have as much.
 const LEAST_AREA: f64 = 1e-4;
@@ -36,6 +40,29 @@ pub struct Field {
     /// #V values, not negative.
     pub value: Vec<f64>,
     held: Vec<bool>,
+}
+
+impl Field {
+    /// The field plus `share` of another, kept between 0 and 1: what becomes of it, but for the bounds, when a point is
+    /// added or taken away.
+    pub fn plus(&self, share: f64, other: &Self) -> Self {
+        let sum = self.value.iter().zip(&other.value).map(|(a, b)| (a + share * b).clamp(0.0, 1.0));
+        let value: Vec<f64> = sum.map(|x| if x > NOTHING { x } else { 0.0 }).collect();
+        let held = value.iter().map(|x| *x == 0.0).collect();
+        Self { value, held }
+    }
+
+    /// The field multiplied so as to be 1 at `one`.
+    pub fn times(mut self, factor: f64, one: u32) -> Self {
+        self.value.iter_mut().for_each(|x| *x = (*x * factor).min(1.0));
+        self.value[one as usize] = 1.0;
+        self
+    }
+
+    /// The field where another is 1 at `v`, and this one 0.
+    pub fn lowered(&self, v: u32, other: &Self) -> Self {
+        self.plus(-self.value[v as usize], other)
+    }
 }
 
 /// Room to work in.
@@ -105,10 +132,11 @@ impl Energy {
         self.piece[v as usize]
     }
 
-    /// Whether a field that is held at 0 at vertex `v` would rise there if it were let go.
-    pub fn presses(&self, field: &Field, v: u32) -> bool {
-        let v = v as usize;
-        self.force(&field.value, v) < -1e-7 * self.diagonal[v]
+    /// How much of `bump`, a field that is 1 at `v`, is to be added to a field that is 0 there when nothing fixes it at
+    /// `v` any more: the force at `v` is gone then. 0 where it would sink, 1 at most.
+    pub fn share(&self, field: &Field, v: u32, bump: &Field) -> f64 {
+        let share = -self.force(&field.value, v as usize) / self.force(&bump.value, v as usize);
+        if share.is_finite() { share.clamp(0.0, 1.0) } else { 0.0 }
     }
 
     fn force(&self, value: &[f64], v: usize) -> f64 {
@@ -139,7 +167,7 @@ impl Energy {
         scratch.place[one as usize] = FIXED;
         field.value[one as usize] = 1.0;
         for round in 0..ROUNDS {
-            self.solve(&mut field, scratch);
+                self.solve(&mut field, scratch);
             let changed = self.mend(&mut field, scratch, 2 * round < ROUNDS);
             if !changed {
                 break;
@@ -157,11 +185,11 @@ impl Energy {
                 continue;
             }
             if field.held[v] {
-                if free && self.force(&field.value, v) < -1e-7 * self.diagonal[v] {
+                if free && self.force(&field.value, v) < -RISE * SLACK * self.diagonal[v] {
                     field.held[v] = false;
                     changed = true;
                 }
-            } else if field.value[v] < -1e-7 {
+            } else if field.value[v] < -SLACK {
                 field.held[v] = true;
                 changed = true;
             }

@@ -1,13 +1,16 @@
 //! The search for key points on the coarse mesh (§3.5): add the best one, then replace them in turn.
 //!
-//! Algorithm 1 solves, for every candidate at every step, the weights of all handles and the fit of all poses. Here:
+//! Algorithm 1 solves, for every candidate at every step, the weights of all handles and the fit of all poses. Here three
+//! sieves of growing fineness do it:
 //!
-//! * a field changes only where a point is added that it reaches, or taken away that it is held by: all others stay,
-//!   exactly ([`super::field`]);
-//! * candidates are ranked by how much squared distance the four functions `w_c [p − c, 1]` take from what the points so
-//!   far leave over. Were weights not bounded, adding a handle would add just these to the space of Eq. 2, for
-//!   `w_k′ = w_k − w_k(c) w_c′`;
-//! * the first few of that ranking are tried in full: weights, alternation, error.
+//! 1. All candidates are ranked by how much squared distance the four functions `w_c [p − c, 1]` take from what the
+//!    points so far leave over. Were weights not bounded, adding a handle would add just these to the space of Eq. 2, for
+//!    `w_k′ = w_k − w_k(c) w_c′`.
+//! 2. The better ones are fitted with these `w_k′`, cut off at 0, as weights.
+//! 3. The best few get true bounded weights ([`super::field`]) and are fitted again.
+//!
+//! Taking a point away works the same way round: a field rises by as much of the field of that point as balances the
+//! force that held it down there.
 
 use super::coarse::Coarse;
 use super::field::{Field, NOTHING, Scratch};
@@ -16,11 +19,20 @@ use crate::skinning::factor::Factor;
 use crate::skinning::{FitParameters, Fitter, Rig, Rows, clusters};
 use glam::DVec3;
 
-/// How many candidates are tried in full when a point is added, and when one is replaced.
-const SHORT_LIST: [usize; 2] = [10, 6];
+/// How many candidates pass the first and the second sieve when a point is added.
+const ADDING: [usize; 2] = [40, 5];
 
-/// A replacement must gain more than this share of the error.
+/// The same when one is replaced.
+const REPLACING: [usize; 2] = [25, 3];
+
+/// A replacement must gain more than this share of the error…
 const WORTH: f64 = 1e-4;
+
+/// …and is not looked at closely if it seems worse by more than this share.
+const HOPELESS: f64 = 0.01;
+
+/// A field that is below this at a vertex hardly feels what happens there.
+const FELT: f64 = 1e-3;
 
 /// Asked now and then: whether to go on.
 pub type KeepGoing<'a> = &'a mut dyn FnMut() -> bool;
@@ -31,6 +43,8 @@ pub struct Set {
     /// Indices of candidates, in the order chosen.
     pub members: Vec<usize>,
     fields: Vec<Field>,
+    /// Fields that are estimates.
+    rough: Vec<bool>,
     groups: Vec<u32>,
     /// Mean vertex distance over poses.
     pub error: f64,
@@ -43,96 +57,65 @@ pub struct Search<'a> {
     scratch: Scratch,
     /// The set so far.
     pub set: Set,
-    /// For each candidate, its field if it were added; `None` where not known.
-    probes: Vec<Option<Field>>,
-    /// Whether a probe is only a start for solving.
-    stale: Vec<bool>,
+    /// For each candidate, an estimate of its field if it were added.
+    probes: Vec<Field>,
 }
 
 impl<'a> Search<'a> {
     /// Starts from the first candidate (§3.5), which matters little, as it will be replaced.
     pub fn new(coarse: &'a Coarse, fit: FitParameters) -> Self {
-        let count = coarse.candidates.len();
         let fit = FitParameters { rounds: 6, tolerance: 1e-3, ..fit };
-        let (probes, stale) = (vec![None; count], vec![true; count]);
-        let mut search = Self { coarse, fit, scratch: Scratch::default(), set: Set::default(), probes, stale };
-        if count > 0 {
+        let mut search = Self { coarse, fit, scratch: Scratch::default(), set: Set::default(), probes: Vec::new() };
+        if !coarse.candidates.is_empty() {
             let field = search.field(0, &[], None);
-            search.set = search.complete(vec![0], vec![field], &[]);
+            let groups = vec![0; coarse.energy.len()];
+            search.set = Set { members: vec![0], fields: vec![field], rough: vec![false], groups, error: 0.0 };
             search.regroup();
+            search.probes = (0..coarse.candidates.len()).map(|c| search.field(c, &[0], None)).collect();
         }
         search
     }
 
     /// Adds the best candidate; what was tried, or `None` if there is no other candidate, or no wish to go on.
     pub fn add(&mut self, keep_going: KeepGoing) -> Option<Vec<Tried>> {
-        let members = self.set.members.clone();
-        for c in 0..self.probes.len() {
-            if !members.contains(&c) && self.stale[c] {
-                if !keep_going() {
-                    return None;
-                }
-                let before = self.probes[c].take();
-                self.probes[c] = Some(self.field(c, &members, before.as_ref()));
-                self.stale[c] = false;
-            }
-        }
         let base = self.set.clone();
-        let probes = std::mem::take(&mut self.probes);
-        let ranked = self.ranked(&base, &probes);
-        let tried = self.try_first(&base, &ranked, &probes, SHORT_LIST[0], keep_going);
-        self.probes = probes;
-        let (best, tried) = tried?;
-        self.accept(best?);
+        let probes = self.probes.clone();
+        let (best, tried) = self.sieve(&base, &probes, ADDING, f64::INFINITY, keep_going)?;
+        self.accept(best?, probes);
         Some(tried)
     }
 
     /// Tries to replace the point at `place`; whether a better one was found, or `None` on no wish to go on.
     pub fn replace(&mut self, place: usize, keep_going: KeepGoing) -> Option<bool> {
         let gone = self.set.members[place];
-        let base = self.without(place);
         let vertex = self.coarse.candidates[gone];
-        let mut probes = std::mem::take(&mut self.probes);
-        let kept = probes.clone();
+        let bump = self.set.fields[place].clone();
+        let base = self.without(&self.set, place);
+        let mut probes = self.probes.clone();
         for (c, probe) in probes.iter_mut().enumerate() {
-            if c == gone || base.members.contains(&c) {
-                *probe = None;
-                continue;
-            }
-            let touched = probe.as_ref().is_none_or(|field| self.coarse.energy.presses(field, vertex));
-            if touched || self.stale[c] {
-                if !keep_going() {
-                    self.probes = kept;
-                    return None;
-                }
-                *probe = Some(self.field(c, &base.members, probe.as_ref()));
+            if c != gone && !base.members.contains(&c) {
+                let bump = bump.lowered(self.coarse.candidates[c], probe);
+                *probe = probe.plus(self.coarse.energy.share(probe, vertex, &bump), &bump);
             }
         }
-        let ranked = self.ranked(&base, &probes);
-        let tried = self.try_first(&base, &ranked, &probes, SHORT_LIST[1], keep_going);
-        let Some((best, _)) = tried else {
-            self.probes = kept;
-            return None;
-        };
+        probes[gone] = bump;
+        let limit = self.set.error * (1.0 + HOPELESS);
+        let (best, _) = self.sieve(&base, &probes, REPLACING, limit, keep_going)?;
         match best {
             Some(mut best) if best.error < self.set.error * (1.0 - WORTH) => {
-                self.stale.iter_mut().zip(&probes).for_each(|(stale, probe)| *stale = probe.is_none());
-                self.probes = probes;
                 // The new point takes the place of the old one.
                 best.members[place..].rotate_right(1);
                 best.fields[place..].rotate_right(1);
-                self.accept(best);
+                best.rough[place..].rotate_right(1);
+                self.accept(best, probes);
                 Some(true)
             }
-            _ => {
-                self.probes = kept;
-                Some(false)
-            }
+            _ => Some(false),
         }
     }
 
     /// The order of taking points away that costs least each time, reversed: the last point left comes first.
-    pub fn order(&mut self, keep_going: KeepGoing) -> Option<Vec<usize>> {
+    pub fn order(&self, keep_going: KeepGoing) -> Option<Vec<usize>> {
         let mut set = self.set.clone();
         let mut order = Vec::new();
         while set.members.len() > 1 {
@@ -142,7 +125,7 @@ impl<'a> Search<'a> {
                 if !keep_going() {
                     return None;
                 }
-                let mut rest = self.without_from(&set, place);
+                let mut rest = self.without(&set, place);
                 rest.error = self.error(&rest);
                 if best.as_ref().is_none_or(|b| rest.error < b.error) {
                     gone = place;
@@ -157,15 +140,22 @@ impl<'a> Search<'a> {
         Some(order)
     }
 
-    /// Takes a set over as the current one.
-    fn accept(&mut self, set: Set) {
-        for &added in set.members.iter().filter(|m| !self.set.members.contains(m)) {
-            let vertex = self.coarse.candidates[added] as usize;
-            for (stale, probe) in self.stale.iter_mut().zip(&self.probes) {
-                *stale |= probe.as_ref().is_none_or(|field| field.value[vertex] > NOTHING);
+    /// Takes a set over as the current one; `probes` are those of the set before its last point came in.
+    fn accept(&mut self, set: Set, mut probes: Vec<Field>) {
+        for (added, field) in set.members.iter().zip(&set.fields).filter(|(m, _)| !self.set.members.contains(m)) {
+            let vertex = self.coarse.candidates[*added];
+            for (c, probe) in probes.iter_mut().enumerate() {
+                let reach = probe.value[vertex as usize];
+                if c != *added && reach > NOTHING {
+                    // 1 at the candidate and 0 at the new point, both being 0 at all others.
+                    let own = self.coarse.candidates[c];
+                    let whole = 1.0 - reach * field.value[own as usize];
+                    *probe = probe.plus(-reach, field).times(1.0 / whole.max(NOTHING), own);
+                }
             }
         }
         self.set = set;
+        self.probes = probes;
         self.regroup();
     }
 
@@ -187,48 +177,48 @@ impl<'a> Search<'a> {
         self.coarse.energy.field(self.coarse.candidates[one], &zeros, before, &mut self.scratch)
     }
 
-    fn without(&mut self, place: usize) -> Set {
-        let set = self.set.clone();
-        self.without_from(&set, place)
-    }
-
-    /// The set without one of its points: the fields that were held down there rise.
-    fn without_from(&mut self, set: &Set, place: usize) -> Set {
+    /// The set without one of its points: the fields that it held down rise.
+    fn without(&self, set: &Set, place: usize) -> Set {
         let mut rest = set.clone();
         let vertex = self.coarse.candidates[rest.members.remove(place)];
-        rest.fields.remove(place);
-        for k in 0..rest.members.len() {
-            if self.coarse.energy.presses(&rest.fields[k], vertex) {
-                let mut others = rest.members.clone();
-                let own = others.remove(k);
-                rest.fields[k] = self.field(own, &others, Some(&rest.fields[k]));
+        let bump = rest.fields.remove(place);
+        rest.rough.remove(place);
+        for (field, rough) in rest.fields.iter_mut().zip(&mut rest.rough) {
+            let share = self.coarse.energy.share(field, vertex, &bump);
+            if share > FELT {
+                *field = field.plus(share, &bump);
+                *rough = true;
             }
         }
         rest
     }
 
     /// The set with one point more: the fields that reach there are held down.
-    fn with(&mut self, base: &Set, added: usize, field: &Field) -> Set {
-        let vertex = self.coarse.candidates[added] as usize;
-        let mut fields = Vec::with_capacity(base.fields.len() + 1);
-        let mut members = base.members.clone();
-        members.push(added);
-        for (k, own) in base.fields.iter().enumerate() {
-            fields.push(if own.value[vertex] > NOTHING {
-                let mut others = members.clone();
-                let one = others.remove(k);
-                self.field(one, &others, Some(own))
-            } else {
-                own.clone()
-            });
+    fn with(&self, base: &Set, added: usize, probe: &Field) -> Set {
+        let vertex = self.coarse.candidates[added];
+        let mut set = base.clone();
+        for (field, rough) in set.fields.iter_mut().zip(&mut set.rough) {
+            if field.value[vertex as usize] > NOTHING {
+                *rough |= field.value[vertex as usize] > FELT;
+                *field = field.lowered(vertex, probe);
+            }
         }
-        fields.push(field.clone());
-        self.complete(members, fields, &base.groups)
+        set.members.push(added);
+        set.fields.push(probe.clone());
+        set.rough.push(true);
+        set
     }
 
-    fn complete(&self, members: Vec<usize>, fields: Vec<Field>, groups: &[u32]) -> Set {
-        let groups = if groups.is_empty() { vec![0; self.coarse.energy.len()] } else { groups.to_vec() };
-        let mut set = Set { members, fields, groups, error: 0.0 };
+    /// The set with true fields where it has estimates, and its error.
+    fn refined(&mut self, mut set: Set) -> Set {
+        for k in 0..set.members.len() {
+            if set.rough[k] {
+                let mut others = set.members.clone();
+                let own = others.remove(k);
+                set.fields[k] = self.field(own, &others, Some(&set.fields[k]));
+                set.rough[k] = false;
+            }
+        }
         set.error = self.error(&set);
         set
     }
@@ -276,42 +266,51 @@ impl<'a> Search<'a> {
         sum / surface.poses.len().max(1) as f64
     }
 
-    /// Candidates with a probe by falling gain.
-    fn ranked(&self, base: &Set, probes: &[Option<Field>]) -> Vec<usize> {
-        let leftover = Leftover::new(self.coarse, &self.handles(&base.members), &self.weights(base), self.fit.hold);
-        let mut gains: Vec<(f64, usize)> = probes
-            .iter()
-            .enumerate()
-            .filter(|(c, _)| !base.members.contains(c))
-            .filter_map(|(c, probe)| Some((leftover.gain(self.coarse.candidates[c], probe.as_ref()?), c)))
-            .collect();
-        gains.sort_by(|a, b| b.0.total_cmp(&a.0).then(a.1.cmp(&b.1)));
-        gains.into_iter().map(|(_, c)| c).collect()
-    }
-
-    /// The best of the first few, and all that were tried.
-    fn try_first(
+    /// The best of the candidates that pass all sieves, and all that were fitted. Estimates above `limit` do not pass.
+    fn sieve(
         &mut self,
         base: &Set,
-        ranked: &[usize],
-        probes: &[Option<Field>],
-        count: usize,
+        probes: &[Field],
+        pass: [usize; 2],
+        limit: f64,
         keep_going: KeepGoing,
     ) -> Option<(Option<Set>, Vec<Tried>)> {
-        let mut best: Option<Set> = None;
-        let mut tried = Vec::new();
-        for &c in ranked.iter().take(count) {
+        let handles = self.handles(&base.members);
+        let leftover = Leftover::new(self.coarse, &handles, &self.weights(base), self.fit.hold);
+        let free = (0..probes.len()).filter(|c| !base.members.contains(c) && !self.set.members.contains(c));
+        let mut gains: Vec<(f64, usize)> =
+            free.map(|c| (leftover.gain(self.coarse.candidates[c], &probes[c]), c)).collect();
+        gains.sort_by(|a, b| b.0.total_cmp(&a.0).then(a.1.cmp(&b.1)));
+        let mut estimates = Vec::new();
+        for &(_, c) in gains.iter().take(pass[0]) {
             if !keep_going() {
                 return None;
             }
-            let Some(field) = &probes[c] else { continue };
-            let set = self.with(base, c, field);
-            tried.push(Tried { vertex: self.coarse.surface.origin[self.coarse.candidates[c] as usize], error: set.error });
+            let mut set = self.with(base, c, &probes[c]);
+            set.error = self.error(&set);
+            estimates.push((c, set));
+        }
+        estimates.sort_by(|a, b| a.1.error.total_cmp(&b.1.error).then(a.0.cmp(&b.0)));
+        let mut tried: Vec<Tried> = estimates.iter().map(|(c, set)| self.tried(*c, set.error)).collect();
+        let mut best: Option<Set> = None;
+        for ((c, set), tried) in estimates.into_iter().zip(&mut tried).take(pass[1]) {
+            if set.error > limit {
+                break;
+            }
+            if !keep_going() {
+                return None;
+            }
+            let set = self.refined(set);
+            *tried = self.tried(c, set.error);
             if best.as_ref().is_none_or(|b| set.error < b.error) {
                 best = Some(set);
             }
         }
         Some((best, tried))
+    }
+
+    fn tried(&self, candidate: usize, error: f64) -> Tried {
+        Tried { vertex: self.coarse.surface.origin[self.coarse.candidates[candidate] as usize], error }
     }
 }
 

@@ -69,7 +69,7 @@ pub struct Rig<'a> {
 }
 
 /// The maps that follow one pose best.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Fit {
     /// One map a handle, in mesh units, from the reference to the pose.
     pub maps: Vec<DAffine3>,

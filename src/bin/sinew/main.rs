@@ -2,6 +2,7 @@
 
 mod input;
 mod inspect;
+mod keypoints;
 mod output;
 mod segment;
 mod transfer;
@@ -26,6 +27,8 @@ enum Command {
     Segment(segment::Segment),
     /// Make another mesh move like an animated one
     Transfer(transfer::Transfer),
+    /// Choose the few points that govern a motion
+    Keypoints(keypoints::KeyPointsCommand),
     /// Make a creature
     Zoo(zoo::Zoo),
 }
@@ -44,6 +47,7 @@ fn main() -> ExitCode {
         Command::Inspect(command) => command.run(),
         Command::Segment(command) => command.run(),
         Command::Transfer(command) => command.run(),
+        Command::Keypoints(command) => command.run(),
         Command::Zoo(command) => command.run(),
     };
     match result {

@@ -1,0 +1,83 @@
+//! How long the choice of key points takes, and a pose's fit: natively, on one core, against the paper's letter in the
+//! same run. The letter takes minutes and so runs once.
+
+#[path = "../tests/common/npz.rs"]
+mod npz;
+
+use criterion::Criterion;
+use sinew::clock;
+use sinew::keypoints::{KeyPoints, Parameters, fit_all, select, thinned};
+use sinew::observer::Silent;
+use sinew::sequence::Sequence;
+use sinew::zoo::{self, Recipe};
+
+/// Vertices, poses and points of the comparison.
+const VERTICES: usize = 2_500;
+const POINTS: usize = 12;
+
+/// Ten poses of a horse, where the data is at hand, else of a made one.
+fn horse() -> Sequence {
+    let made = || {
+        let recipe = Recipe { name: "horse".into(), faces: 16_843, poses: 10, exact: false };
+        zoo::make(&recipe).expect("a creature of that name").sequence
+    };
+    let whole = match npz::data("the public horse; a made one is measured instead") {
+        Some(data) => npz::sequence(&data.join("sumner/horse.npz")),
+        None => made(),
+    };
+    thinned(&whole, VERTICES)
+}
+
+fn run(sequence: &Sequence, parameters: &Parameters) -> (f64, KeyPoints) {
+    let start = clock::seconds();
+    let result = select(sequence, parameters, &mut Silent).expect("key points");
+    (clock::seconds() - start, result)
+}
+
+fn last(result: &KeyPoints) -> f64 {
+    result.errors.last().copied().unwrap_or(f64::NAN)
+}
+
+fn by_criterion(criterion: &mut Criterion, horse: &Sequence, parameters: &Parameters) {
+    let points = run(horse, parameters).1.key_points;
+    let mut group = criterion.benchmark_group("key points");
+    group.sample_size(10);
+    group.bench_function("12 of 100 candidates", |b| b.iter(|| run(horse, parameters)));
+    group.bench_function("given by hand", |b| b.iter(|| fit_all(horse, &points, parameters)));
+    group.finish();
+}
+
+fn starts(horse: &Sequence, parameters: &Parameters) {
+    let error = |seed| last(&run(horse, &Parameters { seed, ..parameters.clone() }).1);
+    let errors: Vec<f64> = (0..10).map(error).collect();
+    let (low, high) = errors.iter().fold((f64::INFINITY, 0.0_f64), |(l, h), &e| (l.min(e), h.max(e)));
+    println!("ten starts: errors {errors:.5?}, the worst {:.1} % above the best", 100.0 * (high / low - 1.0));
+}
+
+fn against_the_letter(horse: &Sequence, parameters: &Parameters) {
+    let (quick_seconds, quick) = run(horse, parameters);
+    let (literal_seconds, literal) = run(horse, &Parameters { literal: true, ..parameters.clone() });
+    println!(
+        "{} vertices, {} poses, {POINTS} points: {quick_seconds:.2} s with error {:.5}, by the letter {literal_seconds:.0} s \
+         with error {:.5}: {:.0} times as fast, error {:+.1} %",
+        horse.sizes().vertices,
+        horse.sizes().poses,
+        last(&quick),
+        last(&literal),
+        literal_seconds / quick_seconds,
+        100.0 * (last(&quick) / last(&literal) - 1.0)
+    );
+    for (step, seconds) in quick.seconds {
+        println!("  {step:<20} {seconds:.3} s");
+    }
+}
+
+fn main() {
+    let horse = horse();
+    let parameters = Parameters { points: Some(POINTS), ..Parameters::default() };
+    let mut criterion = Criterion::default().configure_from_args();
+    by_criterion(&mut criterion, &horse, &parameters);
+    criterion.final_summary();
+    starts(&horse, &parameters);
+    against_the_letter(&horse, &parameters);
+}
