@@ -3,11 +3,11 @@
 use super::camera::{Camera, Window};
 use super::motion::{Moment, Motion};
 use super::pins::{self, FLOATS, Pin, Spot};
-use super::sight::hidden;
+use super::sight::Walk;
 use super::skin::Map;
 use glam::Vec3;
 
-/// Vertices and faces that may be walked through for each frame. A larger mesh is walked through every few frames.
+/// Vertices and faces that may be walked through in a frame. The walk through a larger mesh takes a few frames.
 const WALK: usize = 40_000;
 
 /// How much of a head appears or fades in a frame.
@@ -23,10 +23,21 @@ pub struct Board {
     seen: Vec<bool>,
     /// How far heads that came into sight have appeared, and those that went out of it have faded: 0 to 1.
     shown: Vec<f32>,
-    /// Where pins and camera were when it was last looked what is seen.
-    looked: Option<(Camera, Moment, Vec<Option<Vec3>>)>,
-    /// Vertices and faces that were saved up for the next walk.
-    saved: usize,
+    /// For what it was last looked which are seen.
+    looked: Option<View>,
+    /// A look that is under way: for what, with which of the pins, and the maps of that moment.
+    looking: Option<(View, Walk, Vec<usize>, Vec<Map>)>,
+    /// Counts how often the figure changed the way it moves.
+    epoch: usize,
+}
+
+/// All that decides which pins are seen.
+#[derive(Clone, Debug, PartialEq)]
+struct View {
+    camera: Camera,
+    moment: Moment,
+    epoch: usize,
+    points: Vec<Option<Vec3>>,
 }
 
 impl Board {
@@ -34,6 +45,9 @@ impl Board {
     pub fn set(&mut self, pins: Vec<Pin>) {
         self.seen.resize(pins.len(), true);
         self.shown.resize(pins.len(), 1.0);
+        if pins.len() != self.pins.len() {
+            (self.looked, self.looking) = (None, None);
+        }
         self.spots = vec![None; pins.len()];
         self.pins = pins;
     }
@@ -67,37 +81,35 @@ impl Board {
         self.spots = self.pins.iter().map(spot).collect();
     }
 
-    /// Whether anything moved since [`Board::look`] looked. A frame that asks saves up for the walk.
-    pub fn wants_to_look(&mut self, camera: &Camera, moment: Moment) -> bool {
-        let points = self.spots.iter().map(|s| s.map(|s| s.point));
-        let same = self.looked.as_ref().is_some_and(|(c, m, before)| {
-            c == camera && *m == moment && before.len() == self.spots.len() && points.eq(before.iter().copied())
-        });
-        if !same && !self.pins.is_empty() {
-            self.saved += WALK;
+    /// Goes on looking which pins the surface hides; whether there is more to look at in a frame to come. `maps` are
+    /// those of [`Motion::maps`].
+    pub fn look(&mut self, motion: &Motion, moment: Moment, maps: &[Map], camera: &Camera, window: &Window) -> bool {
+        let points: Vec<Option<Vec3>> = self.spots.iter().map(|s| s.map(|s| s.point)).collect();
+        let view = View { camera: *camera, moment, epoch: self.epoch, points };
+        if self.pins.is_empty() || self.looked.as_ref() == Some(&view) {
+            self.looking = None;
+            return false;
         }
-        !same && !self.pins.is_empty()
-    }
-
-    /// Whether enough is saved up for a walk through so many vertices and faces. The first walk is free.
-    pub fn can_look(&self, size: usize) -> bool {
-        self.looked.is_none() || self.saved >= size
-    }
-
-    /// Looks which pins the faces hide; `positions` are #V points of `moment`.
-    pub fn look(&mut self, camera: &Camera, moment: Moment, window: &Window, faces: &[[u32; 3]], positions: &[Vec3]) {
-        let marks: Vec<(usize, _)> =
-            self.spots.iter().enumerate().filter_map(|(i, s)| Some((i, s.as_ref()?.mark(window)))).collect();
-        let points: Vec<_> = marks.iter().map(|m| m.1).collect();
-        for ((i, _), hidden) in marks.iter().zip(hidden(pins::eye(camera), &points, faces, positions)) {
-            self.seen[*i] = !hidden;
+        let (looked_at, mut walk, which, then) = self.looking.take().unwrap_or_else(|| {
+            let (which, marks): (Vec<usize>, Vec<_>) =
+                self.spots.iter().enumerate().filter_map(|(i, s)| Some((i, s.as_ref()?.mark(window)))).unzip();
+            (view.clone(), Walk::new(pins::eye(camera), &marks), which, maps.to_vec())
+        });
+        let place = |v: usize| motion.vertex(v as u32, looked_at.moment, &then);
+        if !walk.step(WALK, motion.vertices(), place, motion.faces()) {
+            self.looking = Some((looked_at, walk, which, then));
+            return true;
+        }
+        for (&i, hidden) in which.iter().zip(walk.hidden) {
+            self.seen[i] = !hidden;
         }
         if self.looked.is_none() {
             // Pins that were just put there do not come in one after the other.
             self.shown = self.seen.iter().map(|&s| f32::from(u8::from(s))).collect();
         }
-        self.looked = Some((*camera, moment, self.spots.iter().map(|s| s.map(|s| s.point)).collect()));
-        self.saved = 0;
+        let up_to_date = looked_at == view;
+        self.looked = Some(looked_at);
+        !up_to_date
     }
 
     /// Lets heads appear and fade by a step; whether there are steps to come.
@@ -110,9 +122,9 @@ impl Board {
         on
     }
 
-    /// What the surface hides is to be looked up again.
-    pub fn forget(&mut self) {
-        self.looked = None;
+    /// The figure moves otherwise than before.
+    pub fn moves_otherwise(&mut self) {
+        self.epoch += 1;
     }
 
     /// Numbers for the shaders, farthest first: see [`Pin::floats`].
@@ -157,9 +169,7 @@ mod tests {
         for (yaw, expected) in [(0.0, [true, false]), (std::f32::consts::PI, [false, true])] {
             let camera = Camera { yaw, pitch: 0.0, distance: 8.0, ..Camera::default() };
             board.place(&motion, moment, &[], &camera, &window, 2.0);
-            assert!(board.wants_to_look(&camera, moment) && board.can_look(5));
-            board.look(&camera, moment, &window, motion.faces(), motion.shape(0));
-            assert!(!board.wants_to_look(&camera, moment));
+            assert!(!board.look(&motion, moment, &[], &camera, &window), "a small mesh is looked at in one go");
             assert_eq!(board.spots().map(|s| s.1).collect::<Vec<_>>(), expected);
             while board.fade() {}
             let drawn = board.floats(2.0);
@@ -170,20 +180,25 @@ mod tests {
     }
 
     #[test]
-    fn large_meshes_are_walked_through_less_often() {
-        let (motion, mut board) = (walls(), board());
+    fn large_meshes_are_looked_at_over_several_frames() {
+        // The two walls and a crowd of vertices that no face names.
+        let walls = walls();
+        let mut points: Vec<f32> = walls.shape(0).iter().flat_map(|p| p.to_array()).collect();
+        points.resize(3 * 5 * WALK / 2, 0.0);
+        let faces: Vec<u32> = walls.faces().concat();
+        let motion = Motion::new(&faces, &points).unwrap();
+        let mut board = board();
         let window = Window { width: 800.0, height: 600.0, insets: [0.0; 4] };
-        let moment = motion.at(-1.0, false);
-        let mut walks = 0;
-        assert!(!board.fade());
-        for turn in 0..20 {
-            let camera = Camera { yaw: 0.1 * turn as f32, ..Camera::default() };
-            board.place(&motion, moment, &[], &camera, &window, 2.0);
-            if board.wants_to_look(&camera, moment) && board.can_look(5 * WALK) {
-                board.look(&camera, moment, &window, motion.faces(), motion.shape(0));
-                walks += 1;
-            }
-        }
-        assert_eq!(walks, 4);
+        let (moment, camera) = (motion.at(-1.0, false), Camera { yaw: 0.0, pitch: 0.0, ..Camera::default() });
+        board.place(&motion, moment, &[], &camera, &window, 2.0);
+        let steps: Vec<bool> = (0..4).map(|_| board.look(&motion, moment, &[], &camera, &window)).collect();
+        assert_eq!(steps, [true, true, false, false]);
+        assert_eq!(board.spots().map(|s| s.1).collect::<Vec<_>>(), [true, false]);
+        board.moves_otherwise();
+        assert!(board.look(&motion, moment, &[], &camera, &window), "another motion is looked at again");
+        let turned = Camera { yaw: std::f32::consts::PI, ..camera };
+        board.place(&motion, moment, &[], &turned, &window, 2.0);
+        while board.look(&motion, moment, &[], &turned, &window) {}
+        assert_eq!(board.spots().map(|s| s.1).collect::<Vec<_>>(), [false, true]);
     }
 }

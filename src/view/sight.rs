@@ -26,36 +26,80 @@ pub type Mark = (Vec3, f32);
 
 /// For each of `marks` whether a face hides it. `faces` is #F triples of vertex numbers, `positions` #V points.
 pub fn hidden(eye: Eye, marks: &[Mark], faces: &[[u32; 3]], positions: &[Vec3]) -> Vec<bool> {
-    let mut out = vec![false; marks.len()];
-    let mut aims: Vec<(Vec2, f32, usize)> = marks
-        .iter()
-        .enumerate()
-        .map(|(i, &(p, slack))| {
+    let mut walk = Walk::new(eye, marks);
+    walk.step(usize::MAX, positions.len(), |v| positions.get(v).copied(), faces);
+    walk.hidden
+}
+
+/// A walk through the mesh that can be taken in steps.
+#[derive(Clone, Debug)]
+pub struct Walk {
+    eye: Eye,
+    /// Where the points are on the picture, how deep what hides them may at most be, and which they are; from left to
+    /// right.
+    aims: Vec<(Vec2, f32, usize)>,
+    /// The vertices on the picture, and how deep, as far as the walk has come.
+    seen: Vec<(Vec2, f32)>,
+    /// The faces that are done.
+    faces: usize,
+    /// For each point whether a face hides it, as far as the walk has come.
+    pub hidden: Vec<bool>,
+}
+
+impl Walk {
+    /// A walk that has not begun.
+    pub fn new(eye: Eye, marks: &[Mark]) -> Self {
+        let aim = |(i, &(p, slack)): (usize, &Mark)| {
             let (at, depth) = eye.project(p);
             (at, depth - slack, i)
-        })
-        .filter(|(at, reach, _)| at.is_finite() && *reach > 0.0)
-        .collect();
-    if aims.is_empty() {
-        return out;
+        };
+        let mut aims: Vec<_> = marks.iter().enumerate().map(aim).filter(|a| a.0.is_finite() && a.1 > 0.0).collect();
+        aims.sort_by(|a, b| a.0.x.total_cmp(&b.0.x));
+        Self { eye, aims, seen: Vec::new(), faces: 0, hidden: vec![false; marks.len()] }
     }
-    aims.sort_by(|a, b| a.0.x.total_cmp(&b.0.x));
-    let seen: Vec<(Vec2, f32)> = positions.iter().map(|&p| eye.project(p)).collect();
-    for corners in faces {
-        let [Some(&a), Some(&b), Some(&c)] = corners.map(|v| seen.get(v as usize)) else { continue };
-        // What reaches behind the camera hides nothing that one would look for.
-        if a.1.min(b.1).min(c.1) <= 0.0 {
-            continue;
+
+    /// Goes on by at most `budget` vertices and faces; whether the walk is over. `position` tells where each of
+    /// `vertices` vertices is; from step to step that, and `faces`, must be the same.
+    pub fn step(
+        &mut self,
+        budget: usize,
+        vertices: usize,
+        position: impl Fn(usize) -> Option<Vec3>,
+        faces: &[[u32; 3]],
+    ) -> bool {
+        if self.aims.is_empty() {
+            return true;
+        }
+        let until = self.seen.len().saturating_add(budget).min(vertices);
+        let left = budget - (until - self.seen.len());
+        for v in self.seen.len()..until {
+            self.seen.push(self.eye.project(position(v).unwrap_or(Vec3::NAN)));
+        }
+        if until < vertices {
+            return false;
+        }
+        let until = self.faces.saturating_add(left).min(faces.len());
+        for corners in &faces[self.faces.min(until)..until] {
+            self.face(corners);
+        }
+        self.faces = until;
+        until == faces.len()
+    }
+
+    fn face(&mut self, corners: &[u32; 3]) {
+        let [Some(&a), Some(&b), Some(&c)] = corners.map(|v| self.seen.get(v as usize)) else { return };
+        // What reaches behind the camera hides nothing that one would look for. Nor does what is nowhere.
+        if !(a.1 > 0.0 && b.1 > 0.0 && c.1 > 0.0) {
+            return;
         }
         let (left, right) = (a.0.x.min(b.0.x).min(c.0.x), a.0.x.max(b.0.x).max(c.0.x));
-        let first = aims.partition_point(|aim| aim.0.x < left);
-        for &(at, reach, i) in aims[first..].iter().take_while(|aim| aim.0.x <= right) {
-            if !out[i] && depth_at(at, [a, b, c]).is_some_and(|depth| depth < reach) {
-                out[i] = true;
+        let first = self.aims.partition_point(|aim| aim.0.x < left);
+        for &(at, reach, i) in self.aims[first..].iter().take_while(|aim| aim.0.x <= right) {
+            if depth_at(at, [a, b, c]).is_some_and(|depth| depth < reach) {
+                self.hidden[i] = true;
             }
         }
     }
-    out
 }
 
 /// How deep a projected triangle is at a place, if it is there.
@@ -118,5 +162,8 @@ mod tests {
         let found = hidden(eye, &marks, &[[0, 1, 2], [0, 1, 99]], &wall);
         assert_eq!(found, [true, false, false, false, false, false, false]);
         assert!(hidden(eye, &[], &[[0, 1, 2]], &wall).is_empty());
+        let mut walk = Walk::new(eye, &marks);
+        let steps = (1..).find(|_| walk.step(1, 3, |v| wall.get(v).copied(), &[[0, 1, 2], [0, 1, 99]]));
+        assert_eq!((walk.hidden, steps), (found, Some(5)), "in steps it is the same");
     }
 }

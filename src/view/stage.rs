@@ -158,7 +158,7 @@ impl Stage {
         self.extents = vec![None; self.motion.poses() + 1];
         self.whole = [self.motion.reference_extent(), self.motion.extent()];
         self.positions_at = None;
-        self.board.forget();
+        self.board.moves_otherwise();
         self.stale.maps = true;
         self.redraw();
     }
@@ -415,19 +415,13 @@ impl Stage {
         self.board.place(&self.motion, moment, maps, &self.camera, &self.window, radius);
     }
 
-    /// Places the pins for a frame and looks which of them the surface hides; for large meshes only every few frames.
+    /// Places the pins for a frame and looks which of them the surface hides; for large meshes over several frames.
     /// Whether there is more to do in a frame to come. `maps` are the skin's at this moment.
     pub fn look(&mut self, maps: &[Map]) -> bool {
         let moment = self.moment();
         self.place_pins(moment, maps);
-        let size = self.motion.vertices() + self.motion.faces().len();
-        let wants = self.board.wants_to_look(&self.camera, moment);
-        let looks = wants && self.board.can_look(size);
-        if looks {
-            self.positions(moment);
-            self.board.look(&self.camera, moment, &self.window, self.motion.faces(), &self.positions);
-        }
-        self.board.fade() || wants != looks
+        let more = self.board.look(&self.motion, moment, maps, &self.camera, &self.window);
+        self.board.fade() || more
     }
 
     /// Numbers of the pins for the shaders: see [`Board::floats`].
