@@ -53,12 +53,7 @@ impl Joints {
                 bones[i as usize] = (a.middle(), target, other.map_or(0.0, |b| b.weight));
             } else if let Some(b) = other {
                 let weight = (a.weight * b.weight).sqrt();
-                links.push(Link {
-                    bones: [i as usize, j as usize],
-                    weight,
-                    source: a.middle(),
-                    target: b.middle(),
-                });
+                links.push(Link { bones: [i as usize, j as usize], weight, source: a.middle(), target: b.middle() });
             }
         }
         join_loose(source, rig, &bones, &mut links);
@@ -143,11 +138,8 @@ fn blends(surface: &Surface, rows: &Rows) -> BTreeMap<(u32, u32), Blend> {
 fn join_loose(source: &Surface, rig: &Rig, bones: &[(DVec3, DVec3, f64)], links: &mut Vec<Link>) {
     let strongest = links.iter().map(|link| link.weight).fold(0.0, f64::max);
     let weight = if strongest > 0.0 { LOOSE * strongest } else { LOOSE };
-    let main: Vec<u32> = rig
-        .rows
-        .iter()
-        .map(|row| row.iter().max_by(|a, b| a.1.total_cmp(&b.1)).map_or(0, |entry| entry.0))
-        .collect();
+    let main: Vec<u32> =
+        rig.rows.iter().map(|row| row.iter().max_by(|a, b| a.1.total_cmp(&b.1)).map_or(0, |entry| entry.0)).collect();
     let mut group: Vec<usize> = (0..rig.bones).collect();
     links.iter().for_each(|link| join(&mut group, link.bones));
     let points: Vec<[f64; 3]> = source.positions.iter().map(DVec3::to_array).collect();

@@ -87,8 +87,7 @@ impl Prepared {
         let poses: Vec<Vec<DVec3>> = source.poses().iter().map(|pose| here.unit(&pose.positions)).collect();
         steps.end("surfaces", 0.1)?;
         let weights = Biharmonic::new(target.faces(), target.reference())?;
-        let registration =
-            Registration::new(&there).map_err(|_| TransferError::Degenerate { side: "target" })?;
+        let registration = Registration::new(&there).map_err(|_| TransferError::Degenerate { side: "target" })?;
         steps.end("systems", 0.3)?;
         let rig = match parameters.method {
             Method::Bones => Rig::new(&here, &poses, parameters.bones.max(1)),
@@ -174,7 +173,14 @@ impl Prepared {
             }
         };
         steps.end("maps", 1.0)?;
-        Ok(Transfer { skin, alignment, bones: self.rig.bones, source_error: self.rig.error, warnings, seconds: steps.seconds })
+        Ok(Transfer {
+            skin,
+            alignment,
+            bones: self.rig.bones,
+            source_error: self.rig.error,
+            warnings,
+            seconds: steps.seconds,
+        })
     }
 
     /// The pairs without repetitions.
@@ -187,12 +193,9 @@ impl Prepared {
         for (number, pair) in pairs.iter().enumerate() {
             let place = |side: &'static str, surface: &Surface, vertex: u32| match surface.place.get(vertex as usize) {
                 Some(&place) => Ok(place),
-                None => {
-                    Err(TransferError::OutOfRange { pair: number, side, vertex, vertices: surface.place.len() })
-                }
+                None => Err(TransferError::OutOfRange { pair: number, side, vertex, vertices: surface.place.len() }),
             };
-            let places =
-                [place("source", &self.source, pair.source)?, place("target", &self.target, pair.target)?];
+            let places = [place("source", &self.source, pair.source)?, place("target", &self.target, pair.target)?];
             let before = [0, 1].map(|side| seen[side].get(&places[side]).copied());
             match before {
                 [None, None] => {

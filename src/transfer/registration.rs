@@ -42,8 +42,7 @@ pub struct Ground {
 impl Ground {
     /// Prepares a surface.
     pub fn new(surface: &Surface) -> Self {
-        let points: Vec<[f64; 6]> =
-            surface.positions.iter().zip(&surface.normals).map(|(&p, &n)| key(p, n)).collect();
+        let points: Vec<[f64; 6]> = surface.positions.iter().zip(&surface.normals).map(|(&p, &n)| key(p, n)).collect();
         Self { tree: KdTree::new(&points) }
     }
 

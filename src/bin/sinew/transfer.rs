@@ -239,9 +239,9 @@ fn polygons(sequence: &Sequence) -> Vec<Vec<u32>> {
     };
     let mut polygons: Vec<(u32, Vec<u32>)> = Vec::new();
     for (&face, &number) in sequence.faces().iter().zip(numbers) {
-        match polygons.last_mut() {
-            Some((last, corners)) if *last == number && insert(corners, face) => {}
-            _ => polygons.push((number, face.to_vec())),
+        let joined = polygons.last_mut().is_some_and(|(last, corners)| *last == number && insert(corners, face));
+        if !joined {
+            polygons.push((number, face.to_vec()));
         }
     }
     polygons.into_iter().map(|polygon| polygon.1).collect()

@@ -79,13 +79,7 @@ pub fn find(surface: &Surface, poses: &[&[DVec3]], most: usize) -> Bones {
 }
 
 /// For each bone its motion in each pose.
-fn fit(
-    surface: &Surface,
-    poses: &[&[DVec3]],
-    samples: &[usize],
-    of: &[u32],
-    count: usize,
-) -> Vec<Vec<RigidMotion>> {
+fn fit(surface: &Surface, poses: &[&[DVec3]], samples: &[usize], of: &[u32], count: usize) -> Vec<Vec<RigidMotion>> {
     let mut moments = vec![vec![Moments::default(); poses.len()]; count];
     for (&v, &bone) in samples.iter().zip(of) {
         for (moments, pose) in moments[bone as usize].iter_mut().zip(poses) {
@@ -181,8 +175,10 @@ fn patches(surface: &Surface, of: &[u32]) -> (Vec<u32>, usize) {
                 }
             }
         }
-        let to: Vec<Option<u32>> =
-            votes.iter().map(|v| v.iter().max_by_key(|(bone, n)| (**n, std::cmp::Reverse(**bone))).map(|b| *b.0)).collect();
+        let to: Vec<Option<u32>> = votes
+            .iter()
+            .map(|v| v.iter().max_by_key(|(bone, n)| (**n, std::cmp::Reverse(**bone))).map(|b| *b.0))
+            .collect();
         let mut changed = false;
         for (bone, &p) in of.iter_mut().zip(&patch) {
             if let Some(to) = to[p as usize] {
