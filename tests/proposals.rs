@@ -165,6 +165,13 @@ fn measure(case: &Case, proposer: &Proposer, given: usize, seed: u64, draw: &Dra
         if known.is_none() {
             let error = 100.0 * target[proposal.target as usize].distance(*at) / case.target.diagonal();
             off.push(error);
+            if error > 4.0 && std::env::var("EACH").is_ok() {
+                let s = case.source.reference()[points[trust_index(&proposals.points, proposal)] as usize];
+                println!(
+                    "  {error:.1} at {s:.2} true {at:.2} proposed {:.2}, confidence {:.2}",
+                    target[proposal.target as usize], proposal.confidence
+                );
+            }
             errors.trust.push((proposal.confidence, error));
         }
     }
@@ -174,6 +181,10 @@ fn measure(case: &Case, proposer: &Proposer, given: usize, seed: u64, draw: &Dra
     off.sort_by(f64::total_cmp);
     errors.median.push(off[off.len() / 2]);
     errors.worst.push(off[off.len() - 1]);
+}
+
+fn trust_index(all: &[sinew::transfer::propose::Proposal], one: &sinew::transfer::propose::Proposal) -> usize {
+    all.iter().position(|p| std::ptr::eq(p, one)).unwrap_or(0)
 }
 
 fn mean(values: &[f64]) -> f64 {

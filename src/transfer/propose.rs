@@ -9,11 +9,12 @@
 //! and J. P. Costeira, *A global solution to sparse correspondence problems*, IEEE Transactions on Pattern Analysis and
 //! Machine Intelligence 25(2), 2003, pp. 187–199), here relaxed by rounds of averages.
 
-pub mod consensus;
-pub mod paths;
-pub mod similarity;
-pub mod starts;
-pub mod surface;
+mod consensus;
+mod paths;
+mod similarity;
+mod starts;
+mod surface;
+mod tips;
 
 use consensus::{Consensus, LAST, Point, Rules, Target};
 use glam::DVec3;
@@ -187,7 +188,7 @@ impl Proposer {
 }
 
 /// Points of the source that look for their places together.
-pub(crate) struct Crowd {
+struct Crowd {
     /// The company first, then the points asked for.
     pub points: Vec<Point>,
     /// Distances between all of them, row by row.

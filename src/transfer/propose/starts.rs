@@ -3,7 +3,7 @@
 use super::consensus::{Consensus, LAST, Rules};
 use super::similarity::Similarity;
 use super::surface::Surface;
-use super::{COMPANY, CONSIDERED, Crowd, Proposer};
+use super::{COMPANY, CONSIDERED, Crowd, Proposer, tips};
 use glam::{DMat3, DVec3};
 
 /// What facing away costs when samples look for the nearest place.
@@ -23,7 +23,7 @@ pub struct Orientation {
 }
 
 /// Places of a crowd.
-pub struct Start {
+pub(super) struct Start {
     /// #points samples of the target.
     pub at: Vec<Option<u32>>,
     /// How bad it is.
@@ -42,11 +42,18 @@ impl Start {
 }
 
 /// The start that ends best for a crowd.
-pub fn best(proposer: &Proposer, crowd: &Crowd) -> Start {
+pub(super) fn best(proposer: &Proposer, crowd: &Crowd) -> Start {
     let mut starts: Vec<Vec<Option<u32>>> = Vec::new();
     let lay = |map: &dyn Fn(DVec3) -> DVec3, turn: DMat3| laid(&proposer.target, crowd, map, turn);
     for orientation in &proposer.orientations {
         starts.push(lay(&|p| orientation.map * p, orientation.map));
+    }
+    for orientation in &proposer.orientations {
+        let mut at = vec![None; crowd.points.len()];
+        for (point, sample) in tips::assign(&proposer.source, &proposer.target, crowd, orientation.map) {
+            at[point as usize] = Some(sample);
+        }
+        starts.push(at);
     }
     let given = crowd.points.iter().filter_map(|p| Some((1.0, p.place, p.given.as_ref()?.place)));
     if given.clone().count() >= 3 {
@@ -62,7 +69,16 @@ pub fn best(proposer: &Proposer, crowd: &Crowd) -> Start {
         for schedule in schedules {
             let outcome = run(&proposer.target, crowd, start.clone(), schedule);
             if std::env::var("TRACE").is_ok() {
-                eprintln!("start badness {}", outcome.badness);
+                eprintln!(
+                    "start badness {} {:?}",
+                    outcome.badness,
+                    start
+                        .iter()
+                        .enumerate()
+                        .filter(|_| start.iter().any(|x| x.is_none()))
+                        .filter_map(|(i, s)| Some((i, (*s)?)))
+                        .collect::<Vec<_>>()
+                );
             }
             if best.as_ref().is_none_or(|b| outcome.badness < b.badness) {
                 best = Some(outcome);
@@ -85,7 +101,7 @@ fn run(target: &Surface, crowd: &Crowd, start: Vec<Option<u32>>, schedule: &[Rul
 
 /// The turns worth trying: the figures as they stand, and stretched to the same box; another turn if the shapes clearly
 /// agree better so.
-pub fn orientations(proposer: &Proposer) -> Vec<Orientation> {
+pub(super) fn orientations(proposer: &Proposer) -> Vec<Orientation> {
     let crowd = proposer.crowd(COMPANY[0], &[], &[]);
     let score = |turn: DMat3| {
         let start = laid(&proposer.target, &crowd, &|p| turn * p, turn);

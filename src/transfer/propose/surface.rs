@@ -12,7 +12,14 @@ use glam::DVec3;
 /// Samples of a surface; more cost memory and time by their square.
 pub const SAMPLES: usize = 1200;
 
-/// A sampled surface. Lengths are in shares of the diagonal of its bounding box, places relative to the box's centre.
+/// Samples over whose mean distance sizes are compared.
+const FIRST: usize = 100;
+
+/// What the mean distance between samples is made: as in shares of the diagonal of many a figure.
+const TYPICAL: f64 = 0.4;
+
+/// A sampled surface. Places are relative to the centre of the bounding box. Lengths are such that the mean distance along
+/// the surface is [`TYPICAL`]: unlike the box, that does not depend on how limbs are held.
 #[derive(Clone, Debug)]
 pub struct Surface {
     /// #V places of the mesh's own vertices.
@@ -65,19 +72,23 @@ impl Surface {
         for &v in &used {
             members[cell[v as usize] as usize].push(v);
         }
-        Some(Self {
-            points,
-            vertex_normals,
-            readings,
-            cell,
-            samples,
-            places,
-            normals,
-            distances,
-            graph,
-            members,
-            sides,
-        })
+        let mut surface =
+            Self { points, vertex_normals, readings, cell, samples, places, normals, distances, graph, members, sides };
+        surface.resize(TYPICAL / f64::from(surface.typical()).max(1e-6));
+        Some(surface)
+    }
+
+    /// The mean distance between the first samples.
+    fn typical(&self) -> f32 {
+        let among = FIRST.min(self.len());
+        let sum: f32 = (0..among as u32).flat_map(|s| &self.from(s)[..among]).sum();
+        if among > 1 { sum / (among * (among - 1)) as f32 } else { TYPICAL as f32 }
+    }
+
+    fn resize(&mut self, by: f64) {
+        self.points.iter_mut().chain(&mut self.places).for_each(|p| *p *= by);
+        self.distances.iter_mut().for_each(|d| *d *= by as f32);
+        self.sides *= by;
     }
 
     /// How many samples.
