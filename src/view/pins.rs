@@ -84,7 +84,7 @@ impl Pin {
     /// missing), and 1 if chosen plus 2 if under the pointer.
     fn read(n: &[f32]) -> Option<Self> {
         let &[vertex, face, a, b, c, colour, state, flags] = n else { return None };
-        let whole = |x: f32| (x >= 0.0 && x < 16_777_216.0).then_some(x as u32);
+        let whole = |x: f32| (0.0..16_777_216.0).contains(&x).then_some(x as u32);
         let anchor = match (whole(vertex), whole(face)) {
             (Some(v), _) => Anchor::Vertex(v),
             (None, Some(f)) if (a + b + c).is_finite() => Anchor::Face(f, [a, b, c]),
