@@ -2,9 +2,9 @@
 //!
 //! A few pairs of corresponding vertices are all that is given. Jie Yang, Lin Gao, Yu-Kun Lai, Paul L. Rosin, Shihong Xia,
 //! *Biharmonic deformation transfer with automatic key point selection*, Graphical Models 98, 2018, §3.6, blends the
-//! motions of these points by their biharmonic weights on the target ([`biharmonic`]). The default uses the weights to find
-//! the whole surface of the target on the source ([`registration`]), takes the source's motion apart into near-rigid bones
-//! ([`rig`]), and sets these into the target, joint on joint ([`joints`]). Both give a [`Skin`].
+//! motions of these points by their biharmonic weights on the target ([`biharmonic`]). The default finds the whole surface of
+//! the target on the source, starting from the pairs ([`spline`], [`registration`]), takes the source's motion apart into
+//! near-rigid bones ([`rig`]), and sets these into the target, joint on joint ([`joints`]). Both give a [`Skin`].
 
 pub mod alignment;
 pub mod biharmonic;
@@ -17,6 +17,7 @@ pub mod propose;
 pub mod registration;
 pub mod rig;
 mod skin;
+pub mod spline;
 pub mod surface;
 
 pub use error::TransferError;

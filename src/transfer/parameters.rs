@@ -22,8 +22,9 @@ impl Default for Parameters {
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Method {
-    /// The source is taken apart into near-rigid bones; the biharmonic weights of the pairs tell where on the target they
-    /// are, and its joints are put where its own proportions have them. Nearest to the truth where that is known.
+    /// The source is taken apart into near-rigid bones; the target, bent onto the source with the pairs where they belong,
+    /// tells where on it they are, and its joints are put where its own proportions have them. Nearest to the truth where
+    /// that is known.
     #[default]
     Bones,
     /// The paper: the affine motion of each key point is that of its twin, in the target's frame and scale.

@@ -6,6 +6,7 @@ use super::joints::Joints;
 use super::registration::{Foot, Ground, Pin, Registration, feet};
 use super::rig::Rig;
 use super::rig::weights::{averaged, normalised};
+use super::spline::Spline;
 use super::surface::Surface;
 use super::{Method, Pair, Parameters, Skin, Transfer, TransferError};
 use crate::clock;
@@ -35,17 +36,12 @@ pub struct Prepared {
     rig: Rig,
     ground: Ground,
     registration: Registration,
-    weights: Biharmonic,
-    source_weights: Option<Biharmonic>,
-    last: Option<Last>,
+    /// Of the source and of the target, for the methods that blend by the weights of the key points.
+    weights: Option<[Biharmonic; 2]>,
+    /// The bent target of the result before, from which the next starts while a point is dragged.
+    last: Option<Vec<DVec3>>,
     warnings: Vec<Warning>,
     seconds: Vec<(&'static str, f64)>,
-}
-
-/// The result before, from which the next starts while a point is dragged.
-struct Last {
-    weights: Weights,
-    bent: Vec<DVec3>,
 }
 
 /// Seconds by step, and the observer asked at each.
@@ -86,7 +82,6 @@ impl Prepared {
         let (here, there) = (here?, there?);
         let poses: Vec<Vec<DVec3>> = source.poses().iter().map(|pose| here.unit(&pose.positions)).collect();
         steps.end("surfaces", 0.1)?;
-        let weights = Biharmonic::new(target.faces(), target.reference())?;
         let registration = Registration::new(&there).map_err(|_| TransferError::Degenerate { side: "target" })?;
         steps.end("systems", 0.3)?;
         let rig = match parameters.method {
@@ -94,9 +89,12 @@ impl Prepared {
             Method::Direct | Method::Relative => Rig::default(),
         };
         steps.end("bones", 0.9)?;
-        let source_weights = match parameters.method {
+        let weights = match parameters.method {
             Method::Bones => None,
-            Method::Direct | Method::Relative => Some(Biharmonic::new(source.faces(), source.reference())?),
+            Method::Direct | Method::Relative => Some([
+                Biharmonic::new(source.faces(), source.reference())?,
+                Biharmonic::new(target.faces(), target.reference())?,
+            ]),
         };
         let ground = Ground::new(&here);
         steps.end("search", 1.0)?;
@@ -121,7 +119,6 @@ impl Prepared {
             ground,
             registration,
             weights,
-            source_weights,
             last: None,
             warnings,
             seconds: steps.seconds,
@@ -148,28 +145,21 @@ impl Prepared {
         let mut steps = Steps::new(observer);
         let mut warnings = self.warnings.clone();
         let pairs = self.checked(pairs, &mut warnings)?;
-        let handles: Vec<u32> = pairs.iter().map(|pair| pair.target).collect();
-        let parameters = weights::Parameters::default();
-        let last = self.last.take().filter(|_| quick);
-        let weights = match &last {
-            Some(last) => self.weights.update(&last.weights, &handles, &parameters)?,
-            None => self.weights.weights(&handles, &parameters)?,
-        };
-        steps.end("weights", 0.4)?;
         let points: Vec<(DVec3, DVec3)> = pairs.iter().map(|pair| self.points(pair)).collect();
         let alignment = align(&points);
         let skin = match self.parameters.method {
             Method::Bones => {
-                let bent = self.bend(&pairs, &points, alignment, &weights, last.as_ref());
+                let last = self.last.take().filter(|_| quick);
+                let bent = self.bend(&pairs, &points, alignment, last);
                 steps.end("correspondence", 0.8)?;
                 let skin = self.by_bones(alignment, &bent);
-                self.last = Some(Last { weights, bent });
+                self.last = Some(bent);
                 skin
             }
             method => {
-                let skin = self.by_key_points(method, &pairs, &points, alignment, &weights)?;
-                self.last = Some(Last { weights, bent: Vec::new() });
-                skin
+                let weights = self.weights_of(&pairs)?;
+                steps.end("weights", 0.8)?;
+                self.by_key_points(method, &pairs, &points, alignment, weights)
             }
         };
         steps.end("maps", 1.0)?;
@@ -231,14 +221,13 @@ impl Prepared {
         (at(&self.source, pair.source), at(&self.target, pair.target))
     }
 
-    /// The target bent onto the source.
+    /// The target bent onto the source; `last` is the result before, if the next is to start from it.
     fn bend(
         &self,
         pairs: &[Pair],
         points: &[(DVec3, DVec3)],
         alignment: Alignment,
-        weights: &Weights,
-        last: Option<&Last>,
+        last: Option<Vec<DVec3>>,
     ) -> Vec<DVec3> {
         let target = &self.target;
         let rest: Vec<DVec3> = target.positions.iter().map(|&p| alignment.invert(p)).collect();
@@ -247,15 +236,12 @@ impl Prepared {
             .zip(points)
             .map(|(pair, point)| Pin { vertex: target.place[pair.target as usize], point: point.0 })
             .collect();
-        let before = last.map(|last| &last.bent).filter(|bent| bent.len() == rest.len());
-        let from = before.unwrap_or(&rest);
-        let missing: Vec<DVec3> = pins.iter().map(|pin| pin.point - from[pin.vertex as usize]).collect();
-        let start = from
-            .iter()
-            .zip(&target.vertex)
-            .map(|(&p, &v)| p + weights.row(v as usize).iter().zip(&missing).map(|(w, d)| *d * *w).sum::<DVec3>())
-            .collect();
-        self.registration.bend((&self.source, &self.ground), target, &rest, start, &pins, before.is_some())
+        let quick = last.is_some();
+        let from = last.unwrap_or_else(|| rest.clone());
+        let missing = |pin: &Pin| (rest[pin.vertex as usize], pin.point - from[pin.vertex as usize]);
+        let spline = Spline::new(&pins.iter().map(missing).collect::<Vec<_>>());
+        let start = from.iter().zip(&rest).map(|(&p, &r)| p + spline.at(r)).collect();
+        self.registration.bend((&self.source, &self.ground), target, &rest, start, &pins, quick)
     }
 
     fn by_bones(&self, alignment: Alignment, bent: &[DVec3]) -> Skin {
@@ -285,17 +271,23 @@ impl Prepared {
         normalised(row)
     }
 
+    /// The weights of the key points on the source and on the target.
+    fn weights_of(&self, pairs: &[Pair]) -> Result<[Weights; 2], TransferError> {
+        let Some([here, there]) = &self.weights else { return Err(TransferError::NoPairs) };
+        let [sources, targets] = [|pair: &Pair| pair.source, |pair: &Pair| pair.target]
+            .map(|side| pairs.iter().map(side).collect::<Vec<u32>>());
+        let parameters = weights::Parameters::default();
+        Ok([here.weights(&sources, &parameters)?, there.weights(&targets, &parameters)?])
+    }
+
     fn by_key_points(
         &self,
         method: Method,
         pairs: &[Pair],
         points: &[(DVec3, DVec3)],
         alignment: Alignment,
-        weights: &Weights,
-    ) -> Result<Skin, TransferError> {
-        let Some(biharmonic) = &self.source_weights else { return Ok(Skin::default()) };
-        let handles: Vec<u32> = pairs.iter().map(|pair| pair.source).collect();
-        let here = biharmonic.weights(&handles, &weights::Parameters::default())?;
+        [here, weights]: [Weights; 2],
+    ) -> Skin {
         let rows: Vec<f64> = self.source.vertex.iter().flat_map(|&v| here.row(v as usize).iter().copied()).collect();
         let fit = Fit::new(&self.source, &rows, pairs.len());
         let of_pose = |pose: &Vec<DVec3>| {
@@ -314,7 +306,7 @@ impl Prepared {
         let rows: Vec<Vec<(u32, f64)>> = self.target.vertex.iter().map(row).collect();
         let mut skin = self.skin(pairs.len(), &rows, maps);
         skin.handles = pairs.iter().map(|pair| pair.target).collect();
-        Ok(skin)
+        skin
     }
 
     /// Maps in the target's unit ball as maps in its own units.
