@@ -88,7 +88,10 @@ const PERSON: &[Place] = &[
     side("breast", "chest", 0.7, FRONT),
     side("back", "chest", 0.5, BACK),
     side("belly", "pelvis", 0.5, FRONT),
-    side("seat", "pelvis", 0.2, BACK),
+    side("chin", "head", 0.28, FRONT),
+    side("seat", "pelvis", 0.0, [0.0, -0.3, -1.0]),
+    side("sacrum", "pelvis", 0.5, BACK),
+    side("loin", "pelvis", 1.0, BACK),
     side("left heel", "left foot", 0.05, BACK),
     side("right heel", "right foot", 0.05, BACK),
     tip("left toes", "left foot"),
@@ -108,8 +111,12 @@ const DINOSAUR: &[Place] = &[
     tip("left toes", "left toes"),
     tip("right toes", "right toes"),
     tip("jaw", "jaw"),
+    side("middle of the tail", "tail 3", 0.5, UP),
     tip("tail tip", "tail 5"),
 ];
+
+/// Places of person and dinosaur that go together under different names: the tail is held by the lower back.
+const ALIKE: [(&str, &str); 3] = [("chin", "jaw"), ("sacrum", "middle of the tail"), ("loin", "tail tip")];
 
 const SNAKE: &[Place] = &[
     tip("snout", "head"),
@@ -178,8 +185,9 @@ pub fn landmarks(creature: &Creature) -> Vec<(&'static str, u32)> {
     found.collect()
 }
 
-/// The places that two creatures have in common, with the vertex of `a` and that of `b`: those of one name, and for
-/// snake and hand those in the order of their lists (the fingers are the head, the forearm is the tail).
+/// The places that two creatures have in common, with their names on `a`, the vertex of `a` and that of `b`: those of
+/// one name or alike, and for snake and hand those in the order of their lists (the fingers are the head, the
+/// forearm is the tail).
 pub fn landmark_pairs(a: &Creature, b: &Creature) -> Vec<(&'static str, u32, u32)> {
     let (here, there) = (landmarks(a), landmarks(b));
     let strangers = |a: &str, b: &str| a == "snake" && b == "hand";
@@ -187,7 +195,8 @@ pub fn landmark_pairs(a: &Creature, b: &Creature) -> Vec<(&'static str, u32, u32
     if strangers(from, to) || strangers(to, from) {
         return here.iter().zip(&there).map(|(&(name, v), &(_, w))| (name, v, w)).collect();
     }
-    let twin = |name: &str| there.iter().find(|(other, _)| *other == name);
+    let alike = |a: &str, b: &str| a == b || ALIKE.iter().any(|&(x, y)| (x, y) == (a, b) || (y, x) == (a, b));
+    let twin = |name: &str| there.iter().find(|(other, _)| alike(name, other));
     here.iter().filter_map(|&(name, v)| Some((name, v, twin(name)?.1))).collect()
 }
 
@@ -271,7 +280,7 @@ mod tests {
     #[test]
     fn pairs_are_one_to_one() {
         for (from, to, number) in
-            [("horse", "camel", 25), ("person", "dinosaur", 21), ("snake", "hand", 18), ("hand", "snake", 18)]
+            [("horse", "camel", 25), ("person", "dinosaur", 24), ("snake", "hand", 18), ("hand", "snake", 18)]
         {
             let (a, b) = (creature(from, 8_000), creature(to, 9_000));
             let pairs = landmark_pairs(&a, &b);
