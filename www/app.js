@@ -156,8 +156,9 @@ export class App extends EventTarget {
     const { doc } = this;
     this.selected = Math.min(this.selected, doc.count - 1);
     this.target.react(before, doc);
-    this.keypoints.react(before, doc);
+    // The motion first: it is looked at, what the points weigh is read.
     this.transfer.react(before, doc);
+    this.keypoints.react(before, doc);
     this.changed('doc', 'link');
     if (before.changes !== doc.changes) this.changed('parameters');
   }
