@@ -211,7 +211,7 @@ export class App extends EventTarget {
     this.stage.open(sequence, sequence.loop && sequence.sizes.poses > 1);
     // A target stays: what is new is to move it as well.
     const { changes, search, target, method } = this.doc;
-    this.history.restart({ ...BLANK, changes, search: without(search, 'points'), target, method });
+    this.history.restart({ ...BLANK, changes, search, target, method });
     this.keypoints.forget();
     this.transfer.forget();
     this.changed('source', 'result', 'parameters', 'notice', 'doc', 'link');

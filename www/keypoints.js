@@ -3,6 +3,7 @@
  * those in use: their weights, the groups, the error.
  */
 import { stepNamed } from './steps/index.js';
+import { BEGINNING } from './steps/search-parameters.js';
 import { latest } from './work.js';
 
 /** More than this many make neither a better motion nor a readable picture. */
@@ -40,7 +41,7 @@ export class KeyPoints {
 
   /** The parameters in force. */
   get parameters() {
-    return { ...this.app.about.keypoints, ...this.app.doc.search };
+    return { ...this.app.about.keypoints, ...BEGINNING, ...this.app.doc.search };
   }
 
   /** Whether the points in use are the first of those that the selection chose. */
@@ -99,8 +100,17 @@ export class KeyPoints {
     const { app } = this;
     const { [name]: _, ...search } = app.doc.search;
     if (value != null && value !== app.about.keypoints[name]) search[name] = value;
-    if (name === 'error' || name === 'stop') delete search.points;
+    // A bound or a rule takes the place of a number.
+    if (name === 'error' || name === 'stop') search.points = null;
     app.edit({ search });
+    return this.find();
+  }
+
+  /** When to stop: `count`, or a rule of the engine's. */
+  setStop(rule) {
+    if (rule !== 'count') return this.setParameter('stop', rule);
+    const { stop, points, ...search } = this.app.doc.search;
+    this.app.edit({ search });
     return this.find();
   }
 

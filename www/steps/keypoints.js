@@ -131,7 +131,7 @@ function parameterFold(app) {
     change: (value) => app.keypoints.setParameter(definition.name, value),
     reset: () => app.keypoints.setParameter(definition.name, null),
   }) }));
-  const stop = choice('Stop', STOPS, null, (value) => app.keypoints.setParameter('stop', value), 'stacked');
+  const stop = choice('How many', STOPS, null, (value) => app.keypoints.setStop(value), 'stacked');
   const literal = toggle('By the letter', false, (on) => app.keypoints.setParameter('literal', on),
     'The algorithm exactly as printed: the same points or nearly so, much slower. Made to check the fast answer.');
   const reset = h('button', { type: 'button', class: 'text-button', on: { click: () => app.keypoints.resetParameters() } }, 'Reset all');
@@ -143,7 +143,7 @@ function parameterFold(app) {
       const value = parameters[definition.name];
       control.set(value ?? definition.low, number(value), definition.name in search);
     }
-    const chosen = stop.querySelector(`[value="${parameters.stop}"]`);
+    const chosen = stop.querySelector(`[value="${parameters.points ? 'count' : parameters.stop}"]`);
     if (chosen) chosen.checked = true;
     literal.querySelector('input').checked = Boolean(parameters.literal);
     reset.hidden = Object.keys(search).length === 0;

@@ -13,15 +13,20 @@ export const SLIDERS = [
     help: 'How much scale and shear of a vertex count when groups are formed (Eq. 15).' },
 ];
 
+/** What the page begins with: enough points for any figure, few enough to place by hand. */
+export const BEGINNING = { points: 12 };
+
 export const STOPS = [
-  ['error', 'below ε', 'The rule of the paper.'],
-  ['flat', 'where more help little', 'Where the curve of errors is flat.'],
+  ['count', 'as many as you like', 'A dozen, or as many as the slider under the picture says.'],
+  ['error', 'until the error is below ε', 'The rule of the paper.'],
+  ['flat', 'until more help little', 'Where the curve of errors is flat.'],
 ];
 
 /** Whether a value, from a link for example, is one that the controls could have given. */
 export function isValidSearch(name, value) {
   if (name === 'stop') return STOPS.some(([stop]) => stop === value);
   if (name === 'literal') return typeof value === 'boolean';
+  if (name === 'points' && value === null) return true;
   if (name === 'points') return Number.isInteger(value) && value > 0 && value <= 60;
   const slider = SLIDERS.find((entry) => entry.name === name);
   return Boolean(slider) && typeof value === 'number' && value >= slider.low && value <= slider.high;
