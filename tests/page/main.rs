@@ -5,6 +5,7 @@
 mod harness;
 mod looking;
 mod opening;
+mod pairs;
 mod phone;
 mod players;
 mod source;

@@ -35,6 +35,10 @@ enum Command {
     Weights(weights::WeightsCommand),
     /// Find where points of one mesh lie on another
     Propose(propose::Propose),
+    /// Make another mesh move like an animated one
+    Transfer(transfer::Transfer),
+    /// Choose the few points that govern a motion
+    Keypoints(keypoints::KeyPointsCommand),
     /// Make a creature
     Zoo(zoo::Zoo),
 }
@@ -56,6 +60,8 @@ fn main() -> ExitCode {
         Command::Transfer(command) => command.run(),
         Command::Weights(command) => command.run(),
         Command::Propose(command) => command.run(),
+        Command::Transfer(command) => command.run(),
+        Command::Keypoints(command) => command.run(),
         Command::Zoo(command) => command.run(),
     };
     match result {
