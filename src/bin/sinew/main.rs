@@ -29,16 +29,12 @@ enum Command {
     Segment(segment::Segment),
     /// Choose the few points that govern a motion
     Keypoints(keypoints::KeyPointsCommand),
-    /// Make another mesh move like an animated one
-    Transfer(transfer::Transfer),
-    /// Bounded biharmonic weights of given vertices
-    Weights(weights::WeightsCommand),
     /// Find where points of one mesh lie on another
     Propose(propose::Propose),
     /// Make another mesh move like an animated one
     Transfer(transfer::Transfer),
-    /// Choose the few points that govern a motion
-    Keypoints(keypoints::KeyPointsCommand),
+    /// Bounded biharmonic weights of given vertices
+    Weights(weights::WeightsCommand),
     /// Make a creature
     Zoo(zoo::Zoo),
 }
@@ -60,8 +56,6 @@ fn main() -> ExitCode {
         Command::Transfer(command) => command.run(),
         Command::Weights(command) => command.run(),
         Command::Propose(command) => command.run(),
-        Command::Transfer(command) => command.run(),
-        Command::Keypoints(command) => command.run(),
         Command::Zoo(command) => command.run(),
     };
     match result {
