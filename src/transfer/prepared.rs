@@ -22,6 +22,8 @@ use std::collections::BTreeMap;
 const SMOOTHING: usize = 5;
 const SMOOTHED: usize = 3000;
 const MOST_SMOOTHING: usize = 24;
+/// How far the shape that the bent target keeps is that which the pairs suggest, not its own.
+const BELIEF: f64 = 0.5;
 /// Bones that a vertex of the target may follow.
 const INFLUENCES: usize = 8;
 /// Above this mean distance of the skinned source from the true one, in radii, a person is told.
@@ -236,11 +238,12 @@ impl Prepared {
             .zip(points)
             .map(|(pair, point)| Pin { vertex: target.place[pair.target as usize], point: point.0 })
             .collect();
-        // The shape that the bent target keeps as far as it can is that of the target with its points where they belong:
-        // proportions differ more often than poses do.
-        let shape = splined(&rest, &rest, &pins);
+        // The shape that the bent target keeps as far as it can lies between its own and the one with its points where they
+        // belong: proportions differ, and so do poses.
+        let placed = splined(&rest, &rest, &pins);
+        let shape: Vec<DVec3> = rest.iter().zip(&placed).map(|(r, p)| r.lerp(*p, BELIEF)).collect();
         let quick = last.is_some();
-        let start = last.map_or_else(|| shape.clone(), |last| splined(&rest, &last, &pins));
+        let start = last.map_or(placed, |last| splined(&rest, &last, &pins));
         self.registration.bend((&self.source, &self.ground), target, &shape, start, &pins, quick)
     }
 

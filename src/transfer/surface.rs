@@ -86,6 +86,11 @@ impl Surface {
         surface
     }
 
+    /// Whether there is no place: no face.
+    pub fn is_empty(&self) -> bool {
+        self.vertex.is_empty()
+    }
+
     /// The number of places.
     pub fn len(&self) -> usize {
         self.vertex.len()
@@ -149,9 +154,9 @@ impl Surface {
         }
         let points: Vec<[f64; 3]> = self.positions.iter().map(DVec3::to_array).collect();
         let tree = KdTree::new(&points);
-        for v in 0..self.place.len() {
+        for (v, &given) in reference.iter().enumerate() {
             if self.place[v] == u32::MAX {
-                let at = self.inward(reference[v]).clamp(DVec3::splat(-1e6), DVec3::splat(1e6));
+                let at = self.inward(given).clamp(DVec3::splat(-1e6), DVec3::splat(1e6));
                 self.place[v] = tree.nearest(&at.to_array(), |_| true).unwrap_or(0);
             }
         }
