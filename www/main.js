@@ -129,7 +129,8 @@ function goTo({ parts, time, reference, camera, points }, target) {
   if (parts !== undefined) app.amend({ wanted: parts });
   goToPoints(app, points, target);
   if (camera) stage.camera = camera;
-  if (reference) timeline.toggleReference();
+  // Points are placed more easily on what stands still.
+  if (reference || (app.step === 'target' && time === undefined)) timeline.toggleReference();
   if (time !== undefined) {
     timeline.setPlaying(false);
     timeline.seek(time);

@@ -5,7 +5,7 @@ import { h, show } from '../dom.js';
 import { duration, number, plural } from '../format.js';
 import { lesson } from '../lesson.js';
 import { pointList } from './point-list.js';
-import { KEY_POINT_VIEWS } from './point-views.js';
+import { KEY_POINT_VIEWS, pointOf } from './point-views.js';
 import { SLIDERS, STOPS } from './search-parameters.js';
 import { warnings } from './warnings.js';
 
@@ -103,7 +103,7 @@ function choicePlot(app) {
   return [
     slider({ label: 'Step', low: 1, high: run.steps.length, step: 1, reading: String, input: (value) => app.keypoints.show(value - 1) }).with(shown + 1),
     plot, h('p', { class: 'small faint' },
-      `Error if a candidate becomes point ${shown + 1}, from the best to the worst of ${step.errors.length}. Under the picture, “Candidates” shows where they are.`)];
+      `Error if a candidate becomes point ${pointOf(run, shown)}, from the best to the worst of ${step.errors.length}. Under the picture, “Candidates” shows where they are.`)];
 }
 
 function listSection(app) {

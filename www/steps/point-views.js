@@ -95,11 +95,14 @@ const candidates = {
       map: ERROR,
       marks: [low, (low + high) / 2, high],
       exact: true,
-      unit: `error with this as point ${app.keypoints.shown + 1}, ${plural(step.candidates.length, 'candidate')} tried`,
+      unit: `error with this as point ${pointOf(run, app.keypoints.shown)}, ${plural(step.candidates.length, 'candidate')} tried`,
       step: { name: 'step', at: `${app.keypoints.shown + 1} of ${run.steps.length}`, go: (by) => app.keypoints.show(app.keypoints.shown + by) },
     };
   },
 };
+
+/** The number of the point that a step of the search added: the first has nothing to be compared with. */
+export const pointOf = (run, step) => step + 1 + Math.max(0, run.key_points.length - run.steps.length);
 
 const countOf = (labels) => labels.reduce((most, label) => Math.max(most, label + 1), 0);
 

@@ -7,7 +7,7 @@ import { MARK } from './views.js';
  * @param {import('../stage.js').Stage|null} figure the picture of the mesh concerned
  */
 export function warnings(app, list = [], figure = app.stage) {
-  return list.map(({ message, faces }) => h('p', { class: 'warning' }, message, ' ',
+  return list.map(({ message, faces }) => h('p', { class: 'warning' }, message.charAt(0).toUpperCase() + message.slice(1), ' ',
     faces?.length && h('button', { type: 'button', class: 'text-button', on: {
       click: () => figure?.mark(Uint32Array.from(faces), MARK.highlight),
     } }, 'Show them')));
