@@ -198,6 +198,7 @@ impl Energy {
     }
 
     /// The least energy over the free vertices.
+    #[allow(clippy::needless_range_loop, reason = "v walks several arrays at once")]
     fn solve(&self, field: &mut Field, scratch: &mut Scratch) {
         let Scratch { place, free, first, at, band, x } = scratch;
         free.clear();
