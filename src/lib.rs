@@ -7,8 +7,8 @@
 //!   [`weights`], [`skinning`], [`keypoints`] and [`transfer`].
 //!
 //! Data flows one way: [`import`] (or [`zoo`]) → [`sequence::Sequence`] → [`segmentation`] or [`keypoints`] →
-//! [`transfer`] → [`export`] or [`view`]. Algorithms are plain functions from inputs and a parameter struct to a result struct; they know
-//! nothing of files, of the browser or of drawing.
+//! [`transfer`] → [`export`] or [`view`]. Algorithms are plain functions from inputs and a parameter struct to a result
+//! struct; they know nothing of files, of the browser or of drawing.
 
 pub mod clock;
 pub mod export;

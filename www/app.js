@@ -1,14 +1,36 @@
 /**
  * The state of the page and what can be done to it. Everything that shows something listens to the events named
- * after what changed: `source`, `result`, `parameters`, `step`, `view`, `busy`, `notice`, `panel`, `link`.
+ * after what changed: `source`, `result`, `parameters`, `step`, `view`, `busy`, `notice`, `panel`, `link`, `doc`
+ * (what can be undone), `points` (what follows from the key points), `target`, `motion` (of the target), `selected`.
+ *
+ * What can be undone is one small immutable object, {@link Doc}; all else follows from it or is only looked at.
  */
-import { Cancelled } from './engine.js';
 import { collect, fetchSource } from './files.js';
-import { VIEWS } from './steps/views.js';
+import { History } from './history.js';
+import { KeyPoints, MOST_POINTS } from './keypoints.js';
+import { PARTS_VIEW, stepNamed } from './steps/index.js';
+import { KEY_POINT_VIEWS } from './steps/point-views.js';
+import { Target } from './target.js';
+import { Transfer } from './transfer.js';
+import { Work } from './work.js';
 
-const PARTS = VIEWS.at(-1);
 /** A change of a parameter during a run that will take longer than this (seconds) stops the run. */
 const WORTH_STOPPING = 1;
+
+/**
+ * @typedef {object} Doc what can be undone
+ * @property {object} changes parameters of the segmentation that differ from the engine's defaults
+ * @property {number|null} wanted the number of parts that was asked for; null: the engine's own choice
+ * @property {object} search parameters of the selection of key points that differ from the engine's defaults
+ * @property {object|null} run the selection's answer
+ * @property {import('./keypoints.js').Point[]} points key points in order; the first `count` are in use
+ * @property {number} count
+ * @property {import('./target.js').Opened|null} target
+ * @property {string} method how the target moves
+ */
+
+/** @type {Doc} */
+const BLANK = { changes: {}, wanted: null, search: {}, run: null, points: [], count: 0, target: null, method: '' };
 
 export class App extends EventTarget {
   /**
@@ -19,33 +41,41 @@ export class App extends EventTarget {
     super();
     this.engine = engine;
     this.stage = stage;
+    /** The picture of the target, once there is one. @type {import('./stage.js').Stage|null} */
+    this.second = null;
     /** Defaults and names, from the engine. */
     this.about = null;
     this.step = 'parts';
-    this.view = 'parts';
+    /** The view of each step that is looked at. */
+    this.views = {};
     /** Which feature and which round of clustering the stage views show. */
     this.feature = 0;
     this.round = 0;
     /** @type {null|{kind: 'zoo', recipe: object}|{kind: 'files'|'src', files: {name: string, blob: Blob}[], options: object, url?: string}} */
     this.source = null;
     this.sequence = null;
-    /** Parameters that differ from the engine's defaults. */
-    this.changes = {};
-    /** The number of parts that was asked for; null: the engine's own choice. */
-    this.wanted = null;
+    /** @type {History<Doc>} */
+    this.history = new History(BLANK);
     this.result = null;
     /** sRGB triples of the parts. */
     this.colours = new Uint8Array();
-    this.busy = null;
     this.notice = null;
     this.panel = true;
+    /** The key point that is selected, by its place in the list; −1: none. */
+    this.selected = -1;
+    /** The key point that is pointed at. */
+    this.hovered = -1;
+    /** Whether a point is held: nothing moves on its own meanwhile. */
+    this.held = false;
     this.partsQueue = { running: false, next: undefined };
     /** How many openings are under way; meanwhile the engine and the page may differ about what is open. */
     this.opening = 0;
-    /** Counts what was started, so that a late answer to an outdated question is dropped. */
-    this.turn = 0;
     /** Counts segmentations. */
     this.runs = 0;
+    this.work = new Work({ changed: () => this.changed('busy'), say: (text) => this.say(text) });
+    this.keypoints = new KeyPoints(this);
+    this.target = new Target(this);
+    this.transfer = new Transfer(this);
   }
 
   changed(...what) {
@@ -56,9 +86,81 @@ export class App extends EventTarget {
     for (const name of names.split(' ')) this.addEventListener(name, listener);
   }
 
-  /** The parameters in force. */
+  get busy() {
+    return this.work.busy;
+  }
+
+  get doc() {
+    return this.history.now;
+  }
+
+  get changes() {
+    return this.doc.changes;
+  }
+
+  get wanted() {
+    return this.doc.wanted;
+  }
+
+  /** The parameters of the segmentation in force. */
   get parameters() {
     return { ...this.about.parameters, ...this.changes, parts: null };
+  }
+
+  /** The view of the step in force. */
+  get view() {
+    const { id, view } = owner(this.step);
+    return this.views[id] ?? view;
+  }
+
+  // What can be undone.
+
+  /** Changes what can be undone. @param {Partial<Doc>} patch @param {string|null} mark see {@link History.edit} */
+  edit(patch, mark = null) {
+    const before = this.doc;
+    this.history.edit(patch, mark);
+    this.#react(before);
+  }
+
+  /** Changes it without a step back: for what the page finds out by itself. */
+  amend(patch) {
+    const before = this.doc;
+    this.history.amend(patch);
+    this.#react(before);
+  }
+
+  /** The page as a link has it, before something is opened. @param {Partial<Doc>} doc */
+  reset(doc) {
+    this.amend({ ...BLANK, ...doc });
+    this.history.restart(this.doc);
+  }
+
+  undo() {
+    const before = this.doc;
+    if (this.history.undo()) this.#return(before);
+  }
+
+  redo() {
+    const before = this.doc;
+    if (this.history.redo()) this.#return(before);
+  }
+
+  #return(before) {
+    this.#react(before);
+    const { changes, wanted } = this.doc;
+    if (before.changes !== changes) this.segment();
+    else if (before.wanted !== wanted) this.#cut();
+  }
+
+  #react(before) {
+    const { doc } = this;
+    this.selected = Math.min(this.selected, doc.count - 1);
+    this.target.react(before, doc);
+    // The motion first: it is looked at, what the points weigh is read.
+    this.transfer.react(before, doc);
+    this.keypoints.react(before, doc);
+    this.changed('doc', 'link');
+    if (before.changes !== doc.changes) this.changed('parameters');
   }
 
   // What is open.
@@ -90,9 +192,9 @@ export class App extends EventTarget {
   }
 
   async #open(operation, source, payload) {
-    this.#giveWay();
+    if (this.busy?.left > WORTH_STOPPING) this.engine.cancel({ all: true });
     this.opening++;
-    const sequence = await this.#run(operation === 'zoo' ? 'making the creature' : 'reading', async (progress) => {
+    const sequence = await this.work.run('source', operation === 'zoo' ? 'making the creature' : 'reading', async (progress) => {
       const message = await payload(progress);
       const transfer = (message.files ?? []).map((file) => file.bytes.buffer);
       return this.engine.call(operation, message, { progress, transfer });
@@ -100,13 +202,19 @@ export class App extends EventTarget {
     this.opening--;
     if (!sequence) return false;
     this.engine.keep(sequence);
-    Object.assign(this, { source, sequence, result: null, wanted: null, feature: 0, round: 0, notice: null });
+    this.work.drop('points', 'search', 'pairs', 'motion', 'export');
+    Object.assign(this, { source, sequence, result: null, feature: 0, round: 0, notice: null, selected: -1 });
     // Numbered shapes have no time of their own; a walk made by code closes on itself.
     sequence.timed = sequence.times.some((time, i) => time !== sequence.times[0] && i > 0);
     sequence.loop = source.kind === 'zoo' || !sequence.timed;
     this.stage.describe(`${sequence.name}, ${sequence.sizes.faces} faces`);
     this.stage.open(sequence, sequence.loop && sequence.sizes.poses > 1);
-    this.changed('source', 'result', 'parameters', 'notice', 'link');
+    // A target stays: what is new is to move it as well.
+    const { changes, search, target, method } = this.doc;
+    this.history.restart({ ...BLANK, changes, search, target, method });
+    this.keypoints.forget();
+    this.transfer.forget();
+    this.changed('source', 'result', 'parameters', 'notice', 'doc', 'link');
     await this.segment();
     return true;
   }
@@ -117,10 +225,9 @@ export class App extends EventTarget {
   async segment() {
     if (!this.sequence || this.opening) return;
     this.#giveWay();
-    const { wanted, parameters } = this;
+    const { wanted, parameters, changes } = this;
     const run = ++this.runs;
-    const changes = { ...this.changes };
-    const result = await this.#run('segmenting', (progress) =>
+    const result = await this.work.run('source', 'segmenting', (progress) =>
       this.engine.call('segment', { parameters }, { progress }));
     if (!result) {
       if (run === this.runs) this.#takeBack();
@@ -134,24 +241,27 @@ export class App extends EventTarget {
     this.feature = Math.min(this.feature, Math.max(0, result.features.length - 1));
     this.round = Math.max(0, result.rounds.length - 1);
     this.#paintParts();
-    if (this.#view() === PARTS) this.stage.flowFrom(Uint32Array.from(result.features, ({ face }) => face));
+    if (this.#looksAtParts) this.stage.flowFrom(Uint32Array.from(result.features, ({ face }) => face));
     this.changed('result', 'link');
   }
 
   /** After a cancel or an error the parameters are again those of the parts that are shown. */
   #takeBack() {
     if (!this.result) return;
-    this.changes = { ...this.result.changes };
-    this.changed('parameters', 'link');
+    this.amend({ changes: this.result.changes });
+    this.changed('parameters');
   }
 
   /** Another number of parts; null: the engine's own choice. Of many calls in a row the last one counts. */
-  async setParts(count) {
-    if (!this.result || this.opening) return;
-    this.wanted = count;
-    this.changed('link');
+  setParts(count) {
+    if (!this.result || this.opening) return undefined;
+    this.edit({ wanted: count }, 'parts');
+    return this.#cut();
+  }
+
+  async #cut() {
     const queue = this.partsQueue;
-    queue.next = count;
+    queue.next = this.wanted;
     if (queue.running) return;
     queue.running = true;
     while (queue.next !== undefined) {
@@ -170,7 +280,7 @@ export class App extends EventTarget {
       Object.assign(result, result.automatic);
       return;
     }
-    const answer = await this.#run('cutting the tree', (progress) =>
+    const answer = await this.work.run('source', 'cutting the tree', (progress) =>
       this.engine.call('parts', { parameters, parts: count }, { progress }));
     if (answer && this.result === result) Object.assign(result, pickParts(answer));
   }
@@ -179,34 +289,36 @@ export class App extends EventTarget {
   exportParts() {
     const { result, colours } = this;
     if (!result || this.opening) return undefined;
-    return this.#run('writing the file', () => this.engine.call('export', { labels: result.labels, colours }));
+    return this.work.run('export', 'writing the file', () => this.engine.call('export', { labels: result.labels, colours }));
   }
 
   /** @param {string} name of a parameter @param {any} value null: the engine's default */
   setParameter(name, value) {
-    if (value == null || value === this.about.parameters[name]) delete this.changes[name];
-    else this.changes[name] = value;
-    if (name === 'method') this.wanted = null;
-    this.changed('parameters', 'link');
+    const isDefault = value == null || value === this.about.parameters[name];
+    const changes = isDefault ? without(this.changes, name) : { ...this.changes, [name]: value };
+    this.edit(name === 'method' ? { changes, wanted: null } : { changes });
     return this.segment();
   }
 
   resetParameters() {
-    this.changes = {};
-    this.changed('parameters', 'link');
+    this.edit({ changes: {} });
     return this.segment();
   }
 
   // What is looked at.
 
   setStep(step) {
+    const before = this.step;
     this.step = step;
+    this.history.rest();
+    stepNamed(step).enter?.(this);
     this.changed('step', 'link');
+    if (rests(this) !== rests(this, before)) this.changed(rests(this) ? 'rest' : 'resume');
     this.paint();
   }
 
   setView(view) {
-    this.view = view;
+    this.views[owner(this.step).id] = view;
     this.changed('view', 'link');
     this.paint();
   }
@@ -228,28 +340,56 @@ export class App extends EventTarget {
     this.changed('panel', 'link');
   }
 
-  /** Paints the creature as the step and the view in force ask. */
+  /** @param {number} index −1: none */
+  select(index) {
+    const selected = clamp(index, -1, this.doc.count - 1);
+    if (selected === this.selected) return;
+    this.selected = selected;
+    this.history.rest();
+    this.changed('selected');
+    if (stepNamed(this.step).points) this.paint();
+  }
+
+  hoverPoint(index) {
+    if (index === this.hovered) return;
+    this.hovered = index;
+    this.changed('hovered');
+  }
+
+  /** The colour of a key point, an sRGB triple; undefined where there is no GPU. */
+  pinColour(index) {
+    if (!this.pinColours?.length) this.pinColours = this.stage.view ? this.stage.pinColours(MOST_POINTS) : null;
+    return this.pinColours?.slice(3 * index, 3 * index + 3);
+  }
+
+  /** Lets the figures move. */
+  play() {
+    this.changed('play');
+  }
+
+  /** Paints both figures as the step and the view in force ask. */
   paint() {
     if (!this.sequence) return;
     this.stage.unmark();
-    if (this.result) {
-      this.#view().paint(this);
-      return;
+    const view = viewOf(this.step, this.view);
+    if (stepNamed(this.step).pair && this.target.sequence && !stepNamed(this.step).points) KEY_POINT_VIEWS[0].paint(this);
+    else if (stepNamed(this.step).points || this.result) view.paint(this);
+    else {
+      this.stage.boundaries = false;
+      this.stage.paint(['paint_clay']);
     }
-    this.stage.boundaries = false;
-    this.stage.paint(['paint_clay']);
   }
 
-  #view() {
-    return (this.step === 'parts' && VIEWS.find(({ id }) => id === this.view)) || PARTS;
+  get #looksAtParts() {
+    return viewOf(this.step, this.view) === PARTS_VIEW;
   }
 
   /** Paints new parts, remembers what colour each has, and goes back to the view in force. */
   #paintParts() {
     this.stage.unmark();
-    PARTS.paint(this);
+    PARTS_VIEW.paint(this);
     this.colours = this.stage.partColours;
-    if (this.#view() !== PARTS) this.paint();
+    if (!this.#looksAtParts) this.paint();
   }
 
   // Work and words.
@@ -258,9 +398,9 @@ export class App extends EventTarget {
     this.engine.cancel();
   }
 
-  /** Stops what runs if a newer question would have to wait for it. */
+  /** Stops a segmentation that runs if a newer question would have to wait for it. */
   #giveWay() {
-    if (this.busy?.left > WORTH_STOPPING) this.cancel();
+    if (this.busy?.lane === 'source' && this.busy.left > WORTH_STOPPING) this.cancel();
   }
 
   /** Tells the visitor something, calmly. */
@@ -273,37 +413,24 @@ export class App extends EventTarget {
     this.notice = null;
     this.changed('notice');
   }
-
-  /**
-   * Runs something long: shows progress, says what went wrong, drops answers that came too late.
-   * @returns {Promise<any>} undefined if it was cancelled, failed, or something newer was started
-   */
-  async #run(label, work) {
-    const turn = ++this.turn;
-    const busy = { label, stage: label, done: 0, left: NaN, started: performance.now() };
-    this.busy = busy;
-    this.changed('busy');
-    const progress = ({ stage, done }) => {
-      const elapsed = (performance.now() - busy.started) / 1000;
-      Object.assign(busy, { stage, done, left: done > 0.02 ? (elapsed * (1 - done)) / done : NaN });
-      if (this.busy === busy) this.changed('busy');
-    };
-    try {
-      const answer = await work(progress);
-      return turn === this.turn ? answer : undefined;
-    } catch (error) {
-      if (!(error instanceof Cancelled)) this.say(error.message);
-      return undefined;
-    } finally {
-      if (this.busy === busy) {
-        this.busy = null;
-        this.changed('busy');
-      }
-    }
-  }
 }
 
+/** Whether points have to be found on the target: that is easier while nothing moves. */
+const rests = (app, step = app.step) => step === 'target' && (!app.target.sequence || app.target.tally.placed < app.doc.count);
+
+/** The step whose views a step has: one without any has those of the parts. */
+const owner = (step) => (stepNamed(step).views ? stepNamed(step) : stepNamed('parts'));
+
+/** The view that a step shows; a step without views of its own shows the parts. */
+const viewOf = (step, view) => stepNamed(step).views?.find(({ id }) => id === view) ?? PARTS_VIEW;
+
 const clamp = (value, low, high) => Math.min(Math.max(value, low), Math.max(low, high));
+
+/** An object without one of its fields. */
+function without(object, name) {
+  const { [name]: _, ...rest } = object;
+  return rest;
+}
 
 const pickParts = ({ labels, unsmoothed, parts, rigid_residual, residual_before_smoothing }) =>
   ({ labels, unsmoothed, parts, rigid_residual, residual_before_smoothing });

@@ -37,6 +37,11 @@ export function slider({ label, symbol = '', help, low, high, step, paper, readi
       value.textContent = text;
       back.hidden = !changed;
     },
+    /** The element, at a value; for a slider that is made anew each time. */
+    with(number) {
+      this.set(number, reading(number), false);
+      return element;
+    },
   };
 }
 

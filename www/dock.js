@@ -6,7 +6,9 @@ import { choice, slider } from './controls.js';
 import { h, iconButton, show } from './dom.js';
 import { number, plural } from './format.js';
 import { colourBar } from './plot.js';
-import { VIEWS } from './steps/views.js';
+import { stepNamed } from './steps/index.js';
+import { MOST_POINTS } from './keypoints.js';
+import { dot } from './steps/point-list.js';
 
 /** The slider ends here even if the finest parts are more. */
 const MOST_PARTS = 48;
@@ -16,28 +18,36 @@ export function dock(host, app) {
   const views = h('div', { class: 'views' });
   const legend = h('div', { class: 'legend' });
   const partsControl = partsSlider(app);
+  const pointsControl = pointsSlider(app);
   show(host, views, legend);
 
+  let shown = '';
   const showViews = () => {
-    show(views, choice('View', VIEWS.map(({ id, label, title }) => [id, label, title]), app.view, (id) => app.setView(id), 'ribbon'));
+    show(views, choice('View', stepNamed(app.step).views.map(({ id, label, title }) => [id, label, title]), app.view, (id) => app.setView(id), 'ribbon'));
   };
   const reveal = () => views.querySelector(':checked')?.parentElement.scrollIntoView?.({ block: 'nearest', inline: 'center' });
   const update = () => {
     const { hidden } = host;
-    host.hidden = app.step !== 'parts' || !app.result;
+    const step = stepNamed(app.step);
+    host.hidden = !step.views || (step.points ? !app.doc.count : !app.result);
     if (host.hidden) return;
-    if (views.querySelector(':checked')?.value !== app.view) showViews();
+    if (shown !== app.step || views.querySelector(':checked')?.value !== app.view) showViews();
+    shown = app.step;
     if (hidden) reveal();
-    const said = VIEWS.find(({ id }) => id === app.view).legend(app);
+    const said = step.views.find(({ id }) => id === app.view).legend(app);
     if (said.kind === 'parts') {
       partsControl.update();
       if (legend.firstChild !== partsControl.element) show(legend, partsControl.element);
-    } else if (said.kind === 'steps') showSteps(legend, app, said);
+    } else if (said.kind === 'points' && app.step === 'keypoints') {
+      pointsControl.update();
+      if (legend.firstChild !== pointsControl.element) show(legend, pointsControl.element);
+    } else if (said.kind === 'points') show(legend, whereNext(app));
+    else if (said.kind === 'steps') showSteps(legend, app, said);
     else if (said.kind === 'scalar') show(legend, scalarLegend(app, said));
     else if (said.kind === 'sets') show(legend, setLegend(said));
     else show(legend, h('p', { class: 'small' }, said.text));
   };
-  app.on('view step result', update);
+  app.on('view step result doc points selected motion target', update);
   app.on('view step', reveal);
   update();
   reveal();
@@ -78,19 +88,59 @@ function partsSlider(app) {
   };
 }
 
+function pointsSlider(app) {
+  const control = slider({
+    label: 'Number of key points', low: 1, high: 24, step: 1, reading: (value) => String(value),
+    input: (value) => value <= app.doc.points.length && app.keypoints.setCount(value),
+    change: (value) => app.keypoints.setCount(value),
+    reset: () => app.keypoints.setCount(app.doc.run?.key_points.length ?? app.doc.count),
+  });
+  control.element.classList.add('wide');
+  const range = control.element.querySelector('input');
+  return {
+    element: control.element,
+    update() {
+      const { count, points, run } = app.doc;
+      range.max = Math.min(MOST_POINTS, Math.max(16, points.length + 4));
+      const { error } = app.keypoints;
+      control.set(count, error === undefined ? String(count) : `${count} · error ${number(error, 2)}`, Boolean(run) && count !== run.key_points.length);
+    },
+  };
+}
+
+/** What to do with the points of the target next. */
+function whereNext(app) {
+  const { target, doc, selected } = app;
+  const chosen = doc.points[selected];
+  const { proposed, missing } = target.tally;
+  const line = (index, text, ...buttons) => h('div', { class: 'where' }, index >= 0 && dot(app, index), h('span', { class: 'small' }, text), ...buttons);
+  const button = (id, text, click) => h('button', { type: 'button', class: 'text-button small', id, on: { click } }, text);
+  const all = proposed > 0 && button('dock-accept-all', 'Accept all', () => target.acceptAll());
+  if (!doc.target) return line(-1, 'Choose a figure that is to move like this one.');
+  if (chosen) {
+    if (chosen.state === 'proposed') return line(selected, 'Proposed. Drag it if it is wrong.', button('dock-accept', 'Accept', () => target.accept(selected)), all);
+    return line(selected, chosen.target == null ? 'Click on the target to place it.' : 'Placed. Drag it to move it.', all);
+  }
+  if (app.step === 'target' && (proposed || missing) && target.wanted >= 0) return line(target.wanted, 'Click where this one lies on the target.', all);
+  if (proposed) return line(-1, `${plural(proposed, 'point')} proposed`, all);
+  return line(-1, missing ? `${plural(missing, 'point')} without a place` : 'Every point has its place.');
+}
+
 function whyNoChoice({ sequence, parameters, result }) {
   if (sequence.sizes.poses === 0) return 'It has a single pose. Parts show only in how a thing moves.';
   if (parameters.method === 'paper') return `${plural(result.parts.length, 'part')}: by the letter of the paper, the method decides how many.`;
   return 'It moves as one: there is nothing to divide.';
 }
 
-function scalarLegend(app, { map, marks, unit }) {
+function scalarLegend(app, { map, marks, unit, exact, step }) {
   const colours = app.stage.colourMap(map);
   return h('div', { class: 'scale' },
-    h('p', { class: 'small faint' }, unit),
+    h('div', { class: 'scale-head' }, h('p', { class: 'small faint' }, unit), step && h('div', { class: 'stepper' },
+      iconButton('previous', `Previous ${step.name}`, () => step.go(-1), { id: 'legend-previous' }), step.at && h('span', { class: 'number small' }, step.at),
+      iconButton('next', `Next ${step.name}`, () => step.go(1), { id: 'legend-next' }))),
     colours && colourBar(colours),
     h('div', { class: 'marks small' }, ...marks.map((value, i) =>
-      h('span', { class: 'number' }, i === marks.length - 1 ? `≥ ${number(value, 2)}` : number(value, 2)))));
+      h('span', { class: 'number' }, i === marks.length - 1 && !exact ? `≥ ${number(value, 2)}` : number(value, 2)))));
 }
 
 function setLegend({ a, b, text }) {

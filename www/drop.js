@@ -18,10 +18,17 @@ export function drops(veil, app) {
     show(-depth);
     try {
       const files = await dropped(event.dataTransfer);
-      if (files.length) await app.openFiles(files);
+      if (files.length) await (onTarget(app, event) ? app.target.openFiles(files) : app.openFiles(files));
       else app.say('There was no file in what was dropped.');
     } catch {
       app.say('What was dropped could not be read.');
     }
   });
+}
+
+/** Whether what is dropped is to be the target: in its step, and on its picture. */
+function onTarget(app, { clientX, clientY }) {
+  if (app.step === 'target') return true;
+  const host = document.getElementById('second');
+  return !host.hidden && host.contains(document.elementFromPoint(clientX, clientY));
 }

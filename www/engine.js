@@ -3,8 +3,8 @@
  *
  * The page sends `{id, operation, …}` and hears `{id, progress: {stage, done}}` any number of times, then one of
  * `{id, result}`, `{id, error}` (a sentence; the engine goes on) or `{id, crash}` (the engine is broken). To cancel
- * is to end the worker. A new one starts from the module that is compiled already and gets back the open sequence,
- * which the page keeps; so a cancel or a crash costs one step and nothing else.
+ * is to end the worker. A new one starts from the module that is compiled already, gets back the open meshes, which
+ * the page keeps, and then the questions that were waiting; so a cancel or a crash costs one step and nothing else.
  */
 
 /** What a cancelled call rejects with. */
@@ -20,7 +20,8 @@ export class Engine {
     this.module = module;
     this.pending = new Map();
     this.next = 0;
-    this.kept = null;
+    /** What a new worker must know: by the operation that gives it back. @type {Map<string, object>} */
+    this.kept = new Map();
     this.alive = false;
     /** What the engine says about itself: default parameters and options, creatures. */
     this.about = this.#start();
@@ -29,24 +30,33 @@ export class Engine {
   /**
    * @param {string} operation
    * @param {object} payload
-   * @param {{progress?: (p: {stage: string, done: number}) => void, transfer?: Transferable[]}} [how]
+   * @param {{progress?: (p: {stage: string, done: number}) => void, transfer?: Transferable[], own?: boolean}} [how]
+   *   `own`: the engine's own business with a new worker
    * @returns {Promise<any>}
    */
-  call(operation, payload, { progress, transfer = [] } = {}) {
+  call(operation, payload, { progress, transfer = [], own = false } = {}) {
     const id = this.next++;
-    const answer = new Promise((resolve, reject) => this.pending.set(id, { resolve, reject, progress }));
+    // What is handed over cannot be asked again.
+    const message = transfer.length ? null : { operation, ...payload };
+    const answer = new Promise((resolve, reject) => this.pending.set(id, { resolve, reject, progress, message, own }));
     this.worker.postMessage({ id, operation, ...payload }, transfer);
     return answer;
   }
 
-  /** Says which sequence a new worker must know. */
-  keep({ name, pose_names, times, faces, reference, poses, polygons }) {
-    this.kept = { name, pose_names, times, faces, reference, poses, polygons };
+  /** Says which source a new worker must know. */
+  keep(sequence) {
+    this.kept.set('restore', parcel(sequence));
   }
 
-  /** Stops whatever runs. */
-  cancel() {
-    this.#restart(new Cancelled('Cancelled.'));
+  /** Says which target a new worker must know; null: none. */
+  keepTarget(sequence) {
+    if (sequence) this.kept.set('restore_target', parcel(sequence));
+    else this.kept.delete('restore_target');
+  }
+
+  /** Stops what runs; with `all` also what waits. */
+  cancel({ all = false } = {}) {
+    this.#restart(new Cancelled('Cancelled.'), all);
   }
 
   async #start() {
@@ -64,9 +74,9 @@ export class Engine {
     const module = await this.module;
     worker.postMessage = post;
     if (worker !== this.worker) throw new Cancelled('Cancelled.');
-    const about = this.call('start', { module });
+    const about = this.call('start', { module }, { own: true });
     about.then(() => (this.alive = true), () => {});
-    if (this.kept) this.call('restore', { kept: this.kept }).catch(() => {});
+    for (const [operation, kept] of this.kept) this.call(operation, { kept }, { own: true }).catch(() => {});
     for (const message of held) post(...message);
     return about;
   }
@@ -91,7 +101,7 @@ export class Engine {
     this.#restart(new Error(CRASHED));
   }
 
-  #restart(reason) {
+  #restart(reason, all = false) {
     this.worker.terminate();
     if (!this.alive && !(reason instanceof Cancelled)) {
       // It never ran: another attempt would fail in the same way.
@@ -99,9 +109,22 @@ export class Engine {
       this.pending.clear();
       return;
     }
-    const pending = [...this.pending.values()];
+    const calls = [...this.pending].sort(([a], [b]) => a - b);
     this.pending.clear();
     this.#start().catch(() => {});
-    for (const call of pending) call.reject(reason);
+    for (const [, call] of calls) if (call.own) call.reject(new Cancelled('Started again.'));
+    // The worker answers in order: the first is the one that ran. The others are asked again.
+    const [first, ...waiting] = calls.filter(([, call]) => !call.own);
+    first?.[1].reject(reason);
+    for (const [id, call] of waiting) {
+      if (all || !call.message) call.reject(reason);
+      else {
+        this.pending.set(id, call);
+        this.worker.postMessage({ id, ...call.message });
+      }
+    }
   }
 }
+
+const parcel = ({ name, pose_names, times, faces, reference, poses, polygons }) =>
+  ({ name, pose_names, times, faces, reference, poses, polygons });

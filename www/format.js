@@ -24,6 +24,12 @@ export function number(value, digits = 3) {
 
 const superscript = (value) => [...String(value)].map((c) => (c === '-' ? '⁻' : '⁰¹²³⁴⁵⁶⁷⁸⁹'[Number(c)])).join('');
 
+/** 2345678 → “2.3 MB”. */
+export function bytes(value) {
+  if (value < 1e4) return `${(value / 1e3).toFixed(1)} kB`;
+  return value < 1e6 ? `${Math.round(value / 1e3)} kB` : `${(value / 1e6).toFixed(1)} MB`;
+}
+
 /** A share of one as a percentage. */
 export function percent(share, digits = 1) {
   if (!Number.isFinite(share)) return '–';

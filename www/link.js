@@ -2,9 +2,11 @@
  * The state of the page in the hash of its address: `#v1;zoo=horse;step=parts;…`. Only what differs from the
  * default is written. Files of the visitor's own cannot travel in a link.
  */
-import { VIEWS } from './steps/views.js';
+import { placesOf, writePoints } from './link-points.js';
 import { STEPS } from './steps/index.js';
+import { METHODS } from './steps/methods.js';
 import { isValid } from './steps/parameters.js';
+import { isValidSearch } from './steps/search-parameters.js';
 
 const VERSION = 'v1';
 /** Browsers limit how often the address may be replaced, in milliseconds. */
@@ -44,7 +46,9 @@ export function writeLink(app, timeline) {
   for (const [name, value] of Object.entries(app.changes)) fields[`p.${name}`] = JSON.stringify(value);
   if (app.wanted != null) fields.parts = app.wanted;
   if (app.step !== 'parts') fields.step = app.step;
-  if (app.view !== 'parts') fields.view = app.view;
+  const { views } = app;
+  for (const step of STEPS) if (step.views && views[step.id] && views[step.id] !== step.view && (step.id === app.step || !STEPS.find(({ id }) => id === app.step).views)) fields.view = views[step.id];
+  writePoints(app, fields);
   if (!app.panel) fields.panel = 'away';
   if (timeline.reference) fields.t = 'reference';
   else if (!timeline.playing && timeline.poses > 1) fields.t = timeline.time.toFixed(2);
@@ -56,22 +60,25 @@ export function writeLink(app, timeline) {
 
 /** Puts what a link says into the page, as far as it makes sense there; what opens is the caller's business. */
 export function applyLink(fields, app) {
-  app.changes = {};
+  const [changes, search] = [{}, {}];
   for (const [name, value] of Object.entries(fields)) {
     const parsed = parse(value);
-    if (name.startsWith('p.') && isValid(name.slice(2), parsed)) app.changes[name.slice(2)] = parsed;
+    if (name.startsWith('p.') && isValid(name.slice(2), parsed)) changes[name.slice(2)] = parsed;
+    if (name.startsWith('k.') && isValidSearch(name.slice(2), parsed)) search[name.slice(2)] = parsed;
   }
+  app.reset({ changes, search, method: METHODS.some(([id]) => id === fields.method) ? fields.method : '' });
   app.step = STEPS.some(({ id }) => id === fields.step) ? fields.step : 'parts';
-  app.view = VIEWS.some(({ id }) => id === fields.view) ? fields.view : 'parts';
+  app.views = {};
+  for (const { id, views } of STEPS) if (views?.some((view) => view.id === fields.view)) app.views[id] = fields.view;
   app.changed('parameters', 'step', 'view');
 }
 
 /** The recipe of the creature that a link names; null if it names none that exists. */
-export function recipeOf(fields, { creatures, recipe }) {
-  if (!creatures.includes(fields.zoo)) return null;
-  const wanted = { name: fields.zoo };
+export function recipeOf(fields, { creatures, recipe }, [key, prefix] = ['zoo', '']) {
+  if (!creatures.includes(fields[key])) return null;
+  const wanted = { name: fields[key] };
   for (const name of RECIPE) {
-    const value = parse(fields[name]);
+    const value = parse(fields[prefix + name]);
     if (typeof value === typeof recipe[name]) wanted[name] = value;
   }
   return wanted;
@@ -95,6 +102,7 @@ export function placeOf(fields) {
     parts: Number.isInteger(Number(fields.parts)) && fields.parts > 0 ? Number(fields.parts) : undefined,
     reference: fields.t === 'reference',
     time: fields.t !== undefined && Number.isFinite(time) ? time : undefined,
+    points: placesOf(fields),
     camera: camera?.length >= 6 && camera.every(Number.isFinite) ? camera : undefined,
   };
 }

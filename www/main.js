@@ -6,7 +6,9 @@ import { iconButton, show } from './dom.js';
 import { drops } from './drop.js';
 import { Engine } from './engine.js';
 import { chosen } from './files.js';
+import { handling } from './handling.js';
 import { keys } from './keys.js';
+import { goToPoints } from './link-points.js';
 import { applyLink, followState, optionsOf, placeOf, readLink, recipeOf } from './link.js';
 import { notices } from './notice.js';
 import { panel } from './panel.js';
@@ -15,6 +17,7 @@ import { progressBar } from './progress.js';
 import { rail } from './rail.js';
 import { copyLink, saveParts, savePicture } from './save.js';
 import { Stage } from './stage.js';
+import { Studio } from './studio.js';
 import { tag } from './tag.js';
 import { theme } from './theme.js';
 import { Timeline } from './timeline.js';
@@ -49,56 +52,63 @@ stage.started.catch((error) => {
 });
 
 const timeline = new Timeline(element('timeline'), app);
-const turnTheme = theme((dark) => (stage.dark = dark));
+const turnTheme = theme((dark) => {
+  stage.dark = dark;
+  if (app.second) app.second.dark = dark;
+});
 notices(element('notice'), app);
 progressBar(element('progress'), app);
-pointers(stage, tag(element('tag'), app));
+const hands = { source: handling(app, 'source', () => stage), target: handling(app, 'target', () => app.second) };
+pointers(stage, { point: tag(element('tag'), app), hand: hands.source });
 drops(element('veil'), app);
-const showKeys = keys({ app, stage, timeline, sheet: element('keys') });
-show(element('tools'),
+const showKeys = keys({ app, stage, timeline, sheet: element('keys'), hands });
+const undo = iconButton('undo', 'Undo (Ctrl Z)', () => app.undo(), { id: 'undo' });
+const redo = iconButton('redo', 'Redo (Ctrl Shift Z)', () => app.redo(), { id: 'redo' });
+show(element('tools'), undo, redo,
   iconButton('link', 'Copy a link to exactly this', () => copyLink(app, timeline)),
   iconButton('picture', 'Save the picture', () => savePicture(app)),
-  iconButton('save', 'Save the parts as GLB', () => saveParts(app)),
+  iconButton('save', 'Save the parts as GLB', () => saveParts(app), { class: 'icon-button roomy' }),
   iconButton('frame', 'All of it in the picture (F)', () => stage.move('frame')),
   iconButton('sun', 'Light or dark', turnTheme),
-  iconButton('keys', 'Keys (?)', showKeys));
+  iconButton('keys', 'Keys (?)', showKeys, { class: 'icon-button roomy' }));
+app.on('doc', showReturns);
+showReturns();
+
+function showReturns() {
+  undo.disabled = !app.history.past.length;
+  redo.disabled = !app.history.future.length;
+}
 
 // Two frames later what was painted is on the screen.
 app.on('result', () => app.result && requestAnimationFrame(() => requestAnimationFrame(() => (ready.segmented = true))));
-app.on('panel step result source', () => requestAnimationFrame(keepClear));
-new ResizeObserver(keepClear).observe(element('stage'));
-
-/** Tells the picture which margins the controls cover. */
-function keepClear() {
-  const box = element('stage').getBoundingClientRect();
-  const covers = (id) => !element(id).hidden && element(id).getBoundingClientRect();
-  const side = covers('panel');
-  const below = document.querySelector('.below').getBoundingClientRect();
-  const bottom = box.bottom - below.top;
-  const right = side && !NARROW.matches ? box.right - side.left : 0;
-  const left = NARROW.matches ? 0 : element('rail').getBoundingClientRect().right - box.left;
-  const top = NARROW.matches ? document.querySelector('.brand').getBoundingClientRect().bottom - box.top : 0;
-  stage.insets = [left, top, right, bottom].map((inset) => Math.max(0, Math.round(inset)));
+/** The picture of the target, made when it is first needed. */
+function makeSecond(host) {
+  const second = new Stage(host, bundle('page'), query.get('backend'));
+  second.addEventListener('trouble', ({ error }) => app.say(error.message));
+  second.started.catch((error) => console.error(error));
+  pointers(second, { point: () => {}, hand: hands.target });
+  return second;
 }
 
 async function start() {
   app.about = await engine.about;
-  await openAddress();
+  openAddress();
   rail(element('rail'), app);
+  const studio = new Studio(app, { hosts: [element('stage'), element('second')], seam: element('seam'), make: makeSecond });
   panel(element('panel'), app);
   dock(element('dock'), app);
   followState(app, timeline);
-  keepClear();
+  studio.keepClear();
   window.addEventListener('hashchange', openAddress);
 }
 
 /** Opens what the address asks for and starts on the first creature otherwise. Does not wait for the parts. */
-async function openAddress() {
+function openAddress() {
   const fields = readLink();
   const place = placeOf(fields);
   applyLink(fields, app);
   app.setPanel(fields.panel !== 'away' && !NARROW.matches);
-  app.addEventListener('source', () => goTo(place), { once: true });
+  app.addEventListener('source', () => goTo(place, recipeOf(fields, app.about, ['target', 'target.'])), { once: true });
   const address = query.get('src');
   const opened = address
     ? openOr(address, optionsOf(fields, app.about))
@@ -114,11 +124,13 @@ async function openOr(address, options) {
   if (notice) app.say(notice.text);
 }
 
-/** The number of parts, the moment and the camera of a link. */
-function goTo({ parts, time, reference, camera }) {
-  if (parts !== undefined) app.wanted = parts;
+/** The number of parts, the points, the moment and the camera of a link. */
+function goTo({ parts, time, reference, camera, points }, target) {
+  if (parts !== undefined) app.amend({ wanted: parts });
+  goToPoints(app, points, target);
   if (camera) stage.camera = camera;
-  if (reference) timeline.toggleReference();
+  // Points are placed more easily on what stands still.
+  if (reference || (app.step === 'target' && time === undefined)) timeline.toggleReference();
   if (time !== undefined) {
     timeline.setPlaying(false);
     timeline.seek(time);
@@ -143,10 +155,22 @@ window.sinew = {
     time: timeline.reference ? -1 : timeline.time,
     panel: app.panel,
     flowing: stage.flowing != null,
+    points: app.doc.count,
+    pointError: app.keypoints.error ?? null,
+    target: app.target.sequence && { name: app.target.sequence.name, ...app.target.sequence.sizes },
+    tally: app.target.tally,
+    next: app.target.next,
+    selected: app.selected,
+    moves: app.transfer.motion && { method: app.transfer.method, pairs: app.transfer.motion.pairs, handles: app.transfer.motion.handles, seconds: app.transfer.motion.took },
+    undo: app.history.past.length,
+    redo: app.history.future.length,
+    drawn: stage.drawn && (app.second?.drawn ?? true),
     plain: stage.pace.plain,
     frame: Math.round(stage.pace.took),
   }),
   open: (files) => app.openFiles(chosen(files)),
+  /** The page's state, to look into. */
+  app,
   bench: () => bench(app),
 };
 

@@ -14,8 +14,8 @@ const AHEAD = 1;
 /** A frame that takes longer than this was asleep, in milliseconds. */
 const ASLEEP = 4000;
 
-/** Pixels to a CSS pixel, at most, from the first to the last resort. */
-const RATIOS = [Infinity, Infinity, 1, 0.6];
+/** Pixels to a CSS pixel, at most, from the first to the last resort. With fewer than one, lines would be stairs. */
+const RATIOS = [Infinity, Infinity, 1];
 
 export class Pace {
   constructor() {
@@ -64,8 +64,8 @@ export class Pace {
     const middle = this.times.sort((a, b) => a - b)[this.times.length >> 1];
     this.times = [];
     if (middle <= SLOW) return false;
-    // One pixel to a CSS pixel is no relief where there are no more.
-    this.level += this.level === 1 && devicePixelRatio <= 1 ? 2 : 1;
+    if (this.level === 1 && devicePixelRatio <= 1) return false;
+    this.level++;
     return true;
   }
 

@@ -2,9 +2,9 @@
 import { h, svg } from './dom.js';
 import { number } from './format.js';
 
-const WIDTH = 304;
-const HEIGHT = 112;
-const FOOT = 20;
+export const WIDTH = 304;
+export const HEIGHT = 112;
+export const FOOT = 20;
 const BINS = 44;
 /** A histogram spans at most this many powers of ten: below is only the rounding of the input. */
 const MOST_DECADES = 5;
@@ -52,7 +52,7 @@ export function histogram(field, threshold, label) {
     words.textContent = threshold.read(number);
   };
   set(threshold.value);
-  const plot = frame(label, ...bars('bar'), above, base(),
+  const plot = frame(label, ...bars('bar'), above, axis(),
     ...decades(low, high).map((power) => tick(place(10 ** power), number(10 ** power, 1))), line, words, grip);
   plot.classList.add('draggable');
   const at = (event) => {
@@ -94,7 +94,7 @@ export function costCurve(curve, current, choose, label) {
   const points = shown.map(({ parts }, i) => [x(parts), y(costs[i])]);
   const at = shown.findIndex(({ parts }) => parts === current);
   const plot = frame(label,
-    base(),
+    axis(),
     svg('polyline', { points: points.map((p) => p.map((v) => v.toFixed(1)).join()).join(' '), class: 'curve' }),
     ...points.map(([px, py]) => svg('circle', { cx: px, cy: py, r: 2, class: 'dot' })),
     at >= 0 && [
@@ -111,19 +111,19 @@ export function costCurve(curve, current, choose, label) {
   return plot;
 }
 
-function ticksBetween(first, last) {
+export function ticksBetween(first, last) {
   const step = [1, 2, 5, 10, 20].find((size) => (last - first) / size <= 6) ?? 50;
   const ticks = [];
   for (let value = Math.ceil(first / step) * step; value <= last; value += step) ticks.push(value);
   return ticks;
 }
 
-const base = () => svg('line', { x1: 0, x2: WIDTH, y1: HEIGHT - FOOT, y2: HEIGHT - FOOT, class: 'axis' });
+export const axis = () => svg('line', { x1: 0, x2: WIDTH, y1: HEIGHT - FOOT, y2: HEIGHT - FOOT, class: 'axis' });
 
-const tick = (x, text) => svg('text', { x: Math.min(WIDTH - 6, Math.max(6, x)), y: HEIGHT - 5, class: 'tick', 'text-anchor': 'middle' }, text);
+export const tick = (x, text) => svg('text', { x: Math.min(WIDTH - 6, Math.max(6, x)), y: HEIGHT - 5, class: 'tick', 'text-anchor': 'middle' }, text);
 
-const frame = (label, ...children) =>
-  svg('svg', { viewBox: `0 0 ${WIDTH} ${HEIGHT}`, class: 'plot', role: 'img', 'aria-label': label }, ...children.flat());
+export const frame = (label, ...children) =>
+  svg('svg', { viewBox: `0 0 ${WIDTH} ${HEIGHT}`, class: 'plot', role: 'img', 'aria-label': label }, ...children.flat().filter(Boolean));
 
 /** A colour map as a bar. @param {Uint8Array} colours sRGB triples */
 export function colourBar(colours) {

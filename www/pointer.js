@@ -1,4 +1,4 @@
-/** Mouse, pen and touch on the canvas: orbit, pan, zoom, and pointing at a face. */
+/** Mouse, pen and touch on a canvas: orbit, pan, zoom, taking hold of pins, and pointing at a face. */
 
 /** A touch that moves less than this is a tap, in pixels. */
 const TAP = 6;
@@ -6,12 +6,16 @@ const WHEEL = 0.0016;
 
 /**
  * @param {import('./stage.js').Stage} stage
- * @param {(at: {x: number, y: number, pick: Float32Array}|null) => void} point hears what lies under the pointer
+ * @param {object} hear
+ * @param {(at: {x: number, y: number, pick: Float32Array}|null) => void} hear.point what lies under the pointer
+ * @param {ReturnType<typeof import('./handling.js').handling>} hear.hand what can be taken hold of
  */
-export function pointers(stage, point) {
+export function pointers(stage, { point, hand }) {
   const held = new Map();
   let start = null;
   let asked = null;
+  let grip = null;
+  let dragged = null;
 
   const place = (event) => {
     const box = stage.canvas.getBoundingClientRect();
@@ -23,11 +27,22 @@ export function pointers(stage, point) {
     if (!asked) requestAnimationFrame(() => {
       const { x, y } = asked;
       asked = null;
-      const pick = held.size ? undefined : stage.pick(x, y);
+      if (held.size) return;
+      stage.canvas.style.cursor = hand.cursor(x, y);
+      const pick = stage.pick(x, y);
       stage.hover(pick ? pick[0] : -1);
       point(pick ? { x, y, pick } : null);
     });
     asked = at;
+  };
+
+  const drag = (at) => {
+    if (!dragged) requestAnimationFrame(() => {
+      const { x, y } = dragged;
+      dragged = null;
+      grip?.move(x, y);
+    });
+    dragged = at;
   };
 
   const leave = () => {
@@ -40,6 +55,13 @@ export function pointers(stage, point) {
     held.set(event.pointerId, place(event));
     start = place(event);
     leave();
+    if (held.size === 1 && !event.shiftKey && event.button === 0) grip = hand.grab(start.x, start.y, event.pointerType === 'touch');
+    else letGo();
+  };
+
+  const letGo = () => {
+    grip?.drop();
+    grip = null;
   };
 
   const move = (event) => {
@@ -50,7 +72,9 @@ export function pointers(stage, point) {
       return;
     }
     const [dx, dy] = [now.x - before.x, now.y - before.y];
-    if (held.size === 1) {
+    if (grip) {
+      if (Math.hypot(now.x - start.x, now.y - start.y) > TAP / 2) drag(now);
+    } else if (held.size === 1) {
       const pans = event.shiftKey || event.buttons & 2 || event.buttons & 4;
       stage.move(pans ? 'pan' : 'orbit', dx, dy);
     } else if (held.size === 2) {
@@ -66,7 +90,10 @@ export function pointers(stage, point) {
     const now = place(event);
     held.delete(event.pointerId);
     const moved = start && Math.hypot(now.x - start.x, now.y - start.y);
-    if (event.type === 'pointerup' && held.size === 0 && moved < TAP) ask(now);
+    if (grip) {
+      if (dragged) grip.move(now.x, now.y);
+      letGo();
+    } else if (event.type === 'pointerup' && held.size === 0 && moved < TAP && !(event.button === 0 && hand.tap(now.x, now.y))) ask(now);
   };
 
   const wheel = (event) => {

@@ -6,7 +6,7 @@ import { STEPS } from './steps/index.js';
 export function rail(host, app) {
   const items = STEPS.map((step) => {
     const summary = h('span', { class: 'small faint' });
-    const button = h('button', { type: 'button', class: 'step-button', on: { click: () => go(app, step.id) } },
+    const button = h('button', { type: 'button', class: 'step-button', id: `step-${step.id}`, on: { click: () => go(app, step.id) } },
       h('span', { class: 'step-title' }, step.title), summary);
     return { step, summary, button };
   });
@@ -17,7 +17,8 @@ export function rail(host, app) {
       else button.removeAttribute('aria-current');
     }
   };
-  app.on('step source result', update);
+  app.on('step source result doc motion', update);
+  app.on('step', () => items.find(({ step }) => step.id === app.step)?.button.scrollIntoView({ block: 'nearest', inline: 'center' }));
   show(host, h('ol', {}, ...items.map(({ button }) => h('li', {}, button))));
   update();
 }

@@ -3,11 +3,13 @@
  *
  * Whatever is shown is written down here first and then handed to the Viewport, so that a lost device costs a
  * moment and nothing else: a fresh canvas, a fresh Viewport, the same state. Without any GPU there is no Viewport,
- * and everything but the picture still works.
+ * and everything but the picture still works. A page may have several pictures, each with a device of its own.
  */
 import { h } from './dom.js';
 import { Pace } from './pace.js';
 import init, { Viewport } from '../pkg/page.js';
+
+export { link } from './linked.js';
 
 /** How long to wait before the next attempt after a device was lost, in milliseconds. */
 const REBUILD_AFTER = 400;
@@ -16,9 +18,15 @@ const LOOK_FOR_LOSS_EVERY = 1000;
 const MOST_REBUILDS = 5;
 /** How long new paint takes to flow in, in milliseconds. */
 const FLOWS = 900;
+/** How near to a pin's head is on it, in CSS pixels. */
+const REACH = 8;
+const PIN_STATES = { fixed: 0, proposed: 1, missing: 2 };
 /** Where frames are slow: how long the picture must be still before it is drawn in full, in milliseconds. */
 const SETTLES = 350;
 const CALM = matchMedia('(prefers-reduced-motion: reduce)');
+
+/** The wasm is started once for all pictures. @type {Promise<any>|null} */
+let bundle = null;
 
 export class Stage extends EventTarget {
   /**
@@ -39,22 +47,57 @@ export class Stage extends EventTarget {
     this.flowing = null;
     /** Whether the picture that is shown is drawn in full, even where frames are slow. */
     this.settled = false;
-    this.kept = { mesh: null, time: -1, loop: false, paint: [['paint_clay']], boundaries: true, wireframe: false, marks: new Map(),
-      camera: null, dark: false, insets: [0, 0, 0, 0] };
+    /** Whether the host has another size than the canvas was made for. */
+    this.unfit = false;
+    /** Whether the host has room for a picture. */
+    this.visible = false;
+    /** Counts what is to be seen, time and camera aside; of it what is on the screen, and what the frames show that are not yet. */
+    this.wanted = 0;
+    this.shown = -1;
+    this.waiting = [];
+    /** What is shown. `skin` moves `mesh` instead of its poses; `camera` is null until the visitor moves it. */
+    this.kept = { mesh: null, skin: null, time: -1, loop: false, paint: [['paint_clay']], boundaries: true, wireframe: false,
+      contours: true, marks: new Map(), pins: [], camera: null, turn: null, dark: false, insets: [0, 0, 0, 0] };
+    this.closing = new AbortController();
     this.started = this.#start(module);
   }
 
   async #start(module) {
-    await init({ module_or_path: module });
+    bundle ??= init({ module_or_path: module });
+    await bundle;
     await this.#build();
-    new ResizeObserver(() => this.#resize()).observe(this.host);
-    matchMedia('(resolution: 1dppx)').addEventListener('change', () => this.#resize());
-    setInterval(() => this.#watch(), LOOK_FOR_LOSS_EVERY);
+    if (this.closing.signal.aborted) return;
+    const watch = setInterval(() => this.#watch(), LOOK_FOR_LOSS_EVERY);
+    const sizes = new ResizeObserver(() => this.#resize());
+    sizes.observe(this.host);
+    this.#watchRatio();
+    this.closing.signal.addEventListener('abort', () => {
+      clearInterval(watch);
+      sizes.disconnect();
+    });
     requestAnimationFrame((now) => this.#frame(now));
+  }
+
+  /** Hears of it when the window moves to a screen with other pixels, or the visitor zooms. */
+  #watchRatio() {
+    const { signal } = this.closing;
+    matchMedia(`(resolution: ${devicePixelRatio}dppx)`).addEventListener('change', () => {
+      this.#resize();
+      this.#watchRatio();
+    }, { once: true, signal });
+  }
+
+  /** Ends it: frees the device, takes the canvas away. */
+  close() {
+    this.closing.abort();
+    this.view?.free();
+    this.view = null;
+    this.canvas?.remove();
   }
 
   /** Tries the backends in turn, each on a canvas of its own. */
   async #build() {
+    if (this.closing.signal.aborted) return;
     for (const backend of await backends(this.forced)) {
       const canvas = h('canvas', { tabindex: '0', role: 'img', 'aria-label': this.label ?? 'The creature' });
       const previous = this.canvas;
@@ -62,7 +105,12 @@ export class Stage extends EventTarget {
       else this.host.prepend(canvas);
       this.canvas = canvas;
       try {
-        this.view = await Viewport.create(canvas, backend);
+        const view = await Viewport.create(canvas, backend);
+        if (this.closing.signal.aborted) {
+          view.free();
+          return;
+        }
+        this.view = view;
         this.backend = this.view.backend();
         break;
       } catch (error) {
@@ -74,6 +122,7 @@ export class Stage extends EventTarget {
     this.dispatchEvent(new Event(this.view ? 'canvas' : 'no-gpu'));
   }
 
+  /** Builds the picture again from what is written down. */
   #restore() {
     const kept = this.kept;
     this.#fit();
@@ -82,41 +131,72 @@ export class Stage extends EventTarget {
     this.view.set_loop(kept.loop);
     if (kept.mesh) {
       this.view.set_mesh(kept.mesh.faces, kept.mesh.reference);
-      this.view.set_poses(kept.mesh.poses);
+      move(this.view, kept);
+      if (kept.turn) turn(this.view, kept.turn);
       if (kept.camera) this.view.set_camera(kept.camera);
       else this.view.frame();
     }
     this.view.set_time(kept.time);
     this.view.set_boundaries(kept.boundaries);
     this.view.set_wireframe(kept.wireframe);
+    this.view.set_contours(kept.contours);
     apply(this.view, kept.paint);
     this.flowing = null;
     this.pace.begun = [];
     this.#simplify();
     for (const [style, faces] of kept.marks) this.view.mark_faces(faces, style);
+    this.view.set_pins(pinNumbers(kept.pins));
+    this.waiting = [];
+    this.wanted++;
   }
 
+  /**
+   * Gives the canvas as many pixels as the host and the pace ask for. That clears it: it is drawn again at once, or
+   * the visitor would see nothing until the next frame, which may be long in coming.
+   */
   #fit() {
     const { width, height } = this.host.getBoundingClientRect();
-    if (width >= 1 && height >= 1) this.view?.resize(width, height, this.settled ? devicePixelRatio : this.pace.ratio);
+    this.visible = width >= 1 && height >= 1;
+    if (!this.visible || !this.view) return;
+    if (!this.view.resize(width, height, this.settled ? devicePixelRatio : this.pace.ratio)) return;
+    this.wanted++;
+    this.#draw(performance.now());
   }
 
+  /** While the graphics are behind, the old picture is stretched rather than one more asked for. */
   #resize() {
-    this.#fit();
+    this.unfit = this.view?.under_way() > 1;
+    if (!this.unfit) this.#fit();
     this.#frameUnlessMoved();
   }
 
   #frame(now) {
+    if (this.closing.signal.aborted) return;
     requestAnimationFrame((later) => this.#frame(later));
     this.dispatchEvent(Object.assign(new Event('tick'), { now }));
-    if (!this.view) return;
+    if (!this.view || !this.visible) return;
     this.#flow(now);
-    if (!this.pace.allows(now, this.view.under_way())) return;
+    const underWay = this.view.under_way();
+    while (this.waiting.length > underWay) this.shown = this.waiting.shift();
+    if (!this.pace.allows(now, underWay)) return;
+    if (this.unfit) this.#resize();
     this.#settle(now);
-    // Without a change nothing is drawn, and nothing is spent.
+    this.#draw(now);
+    // What was asked for may be what was there.
+    if (!this.waiting.length && !this.view.stale()) this.shown = this.wanted;
+  }
+
+  /** Draws if anything has changed. Without a change nothing is spent. */
+  #draw(now) {
     if (!this.view.render()) return;
+    this.waiting.push(this.wanted);
     if (this.pace.began(now, this.settled)) this.#simplify();
     if (this.kept.mesh) this.dispatchEvent(new Event('drawn'));
+  }
+
+  /** Whether all that was asked to be shown is on the screen; time and camera may have moved on. */
+  get drawn() {
+    return !!this.view && this.visible && this.shown === this.wanted && this.flowing == null;
   }
 
   /** Draws as simply as the pace asks, or with all there is. */
@@ -154,6 +234,12 @@ export class Stage extends EventTarget {
 
   /** Writes changes down and hands them on; a Viewport that cannot follow says why in a sentence. */
   #set(changes, act) {
+    this.wanted++;
+    this.#hand(changes, act);
+  }
+
+  /** The same for what moves on all the time. */
+  #hand(changes, act) {
     Object.assign(this.kept, changes);
     if (!this.view) return;
     try {
@@ -180,15 +266,51 @@ export class Stage extends EventTarget {
    */
   open(mesh, loop) {
     this.flowing = null;
-    const changes = { mesh, loop, time: -1, camera: null, marks: new Map(), paint: [['paint_clay']] };
+    const changes = { mesh, loop, skin: null, time: -1, camera: null, marks: new Map(), pins: [], paint: [['paint_clay']] };
     this.#set(changes, (view) => {
       view.set_loop(loop);
       view.set_mesh(mesh.faces, mesh.reference);
       view.set_poses(mesh.poses);
-      view.set_time(-1);
       view.paint_clay();
+      // The whole motion is to be in the picture, not the reference alone.
+      view.set_time(0);
       view.frame();
+      view.set_time(-1);
     });
+  }
+
+  /** What moves the mesh instead of its poses; null: its poses. */
+  get skin() {
+    return this.kept.skin;
+  }
+
+  /**
+   * Each vertex follows K of the handles (16 at most); `matrices` has a 3×4 matrix, row by row, for each pose and handle.
+   * @param {{handles: number, indices: Uint16Array, weights: Float32Array, K: number, matrices: Float32Array}|null} skin
+   */
+  set skin(skin) {
+    const first = !this.kept.skin !== !skin;
+    this.#set({ skin }, (view) => this.kept.mesh && move(view, this.kept));
+    // While a point is dragged the figure moves, and not the camera.
+    if (first) this.#frameUnlessMoved();
+    this.#keepCamera();
+  }
+
+  /** Other matrices for the same skin. @param {Float32Array} matrices */
+  set maps(matrices) {
+    if (!this.kept.skin) return;
+    this.#set({ skin: { ...this.kept.skin, matrices } }, (view) => view.set_maps(matrices));
+    this.#keepCamera();
+  }
+
+  /** The camera's numbers are relative to how far the figure moves: they change with that, though the camera does not. */
+  #keepCamera() {
+    if (this.view && this.kept.camera) this.kept.camera = this.view.camera();
+  }
+
+  /** Whether the last pose goes over into the first. */
+  set loop(loop) {
+    this.#set({ loop }, (view) => view.set_loop(loop));
   }
 
   /**
@@ -220,11 +342,11 @@ export class Stage extends EventTarget {
   }
 
   hover(face) {
-    this.#set({}, (view) => view.hover(face));
+    this.#hand({}, (view) => view.hover(face));
   }
 
   set time(time) {
-    this.#set({ time }, (view) => view.set_time(time));
+    this.#hand({ time }, (view) => view.set_time(time));
   }
 
   set boundaries(on) {
@@ -233,6 +355,11 @@ export class Stage extends EventTarget {
 
   set wireframe(on) {
     this.#set({ wireframe: on }, (view) => view.set_wireframe(on));
+  }
+
+  /** Whether fields on the vertices have lines of equal value. */
+  set contours(on) {
+    this.#set({ contours: on }, (view) => view.set_contours(on));
   }
 
   set dark(dark) {
@@ -248,16 +375,93 @@ export class Stage extends EventTarget {
   move(method, ...values) {
     if (!this.view) return;
     this.view[method](...values);
-    this.kept.camera = method === 'frame' ? null : this.view.camera();
-    this.dispatchEvent(new Event('camera'));
+    const camera = this.view.camera();
+    Object.assign(this.kept, { camera: method === 'frame' ? null : camera, turn: turnOf(camera) });
+    this.#tellCamera(method, values);
   }
 
+  /** Six numbers that show any figure in the same way: target x, y, z, yaw, pitch, distance, in radii of its motion. */
   get camera() {
     return this.view?.camera() ?? this.kept.camera;
   }
 
-  set camera(camera) {
-    this.#set({ camera: Float32Array.from(camera) }, (view) => view.set_camera(Float32Array.from(camera)));
+  set camera(numbers) {
+    const camera = Float32Array.from(numbers);
+    this.#hand({ camera, turn: turnOf(camera) }, (view) => view.set_camera(camera));
+    this.#tellCamera('camera', [camera]);
+  }
+
+  #tellCamera(method, values) {
+    this.dispatchEvent(Object.assign(new Event('camera'), { method, values }));
+  }
+
+  /** The directions that the camera looks in, as yaw and pitch; null before there is one. */
+  get turn() {
+    return this.view ? turnOf(this.view.camera()) : this.kept.turn;
+  }
+
+  /** Looks in other directions, at as much of the figure as before. */
+  set turn(turned) {
+    if (!turned) return;
+    this.#hand({ turn: turned }, (view) => turn(view, turned));
+    if (this.view && this.kept.camera) this.kept.camera = this.view.camera();
+    this.#frameUnlessMoved();
+  }
+
+  /** The middle of the part of the canvas that no panel covers, CSS pixels. */
+  get middle() {
+    const [left, top, right, bottom] = this.kept.insets;
+    const { width, height } = this.host.getBoundingClientRect();
+    return [(width + left - right) / 2, (height + top - bottom) / 2];
+  }
+
+  // Pins.
+
+  /**
+   * Points on the surface, in the order of their numbers. A pin sticks in a `vertex`, or in a `face` at the point with
+   * `weights` of its corners. `colour` is its place in the list unless given; `state` is `fixed`, `proposed` or
+   * `missing`; it may be `selected` and `hovered`.
+   * @param {{vertex?: number, face?: number, weights?: number[], colour?: number, state?: string, selected?: boolean, hovered?: boolean}[]} pins
+   */
+  set pins(pins) {
+    this.#set({ pins }, (view) => view.set_pins(pinNumbers(pins)));
+  }
+
+  get pins() {
+    return this.kept.pins;
+  }
+
+  /** What `pick` gave as an anchor for a pin. */
+  anchor([face, ...rest]) {
+    return { face, weights: rest.slice(0, 3) };
+  }
+
+  /**
+   * Where the pins' heads are, CSS pixels on the canvas; `visible` where the surface does not hide them.
+   * @returns {{x: number, y: number, depth: number, visible: boolean, radius: number}[]}
+   */
+  pinPositions() {
+    if (!this.view || !this.kept.mesh) return [];
+    const numbers = this.view.pin_positions();
+    return this.kept.pins.map((_, i) => {
+      const [x, y, depth, visible, radius] = numbers.subarray(5 * i, 5 * i + 5);
+      return { x, y, depth, visible: visible > 0 && depth > 0, radius };
+    });
+  }
+
+  /** The index of the pin under a point of the canvas, or near it. */
+  pickPin(x, y, reach = REACH) {
+    return this.kept.mesh && this.view ? this.view.pick_pin(x, y, reach) : undefined;
+  }
+
+  /** sRGB triples of the first colours of pins. Each is the same however many there are. */
+  pinColours(count) {
+    return this.view?.pin_colours(count) ?? new Uint8Array();
+  }
+
+  /** sRGB triples of the groups that are painted. */
+  get groupColours() {
+    return this.view?.group_colours() ?? new Uint8Array();
   }
 
   /** What lies under a point of the canvas: `[face, b0, b1, b2, x, y, z]`. */
@@ -286,6 +490,25 @@ export class Stage extends EventTarget {
     return blob;
   }
 }
+
+/** Yaw and pitch of a camera's numbers. */
+const turnOf = (camera) => camera && [camera[3], camera[4]];
+
+function turn(view, [yaw, pitch]) {
+  const camera = view.camera();
+  camera.set([yaw, pitch], 3);
+  view.set_camera(camera);
+}
+
+/** Has the skin or the poses move the mesh. */
+function move(view, { mesh, skin }) {
+  if (skin) view.set_skin(skin.handles, skin.indices, skin.weights, skin.K, skin.matrices);
+  else view.set_poses(mesh.poses);
+}
+
+/** Pins as the Viewport takes them. */
+const pinNumbers = (pins) => Float32Array.from(pins.flatMap(({ vertex = -1, face = -1, weights = [0, 0, 0], colour, state = 'fixed', selected, hovered }, i) =>
+  [vertex, face, ...weights, colour ?? i, PIN_STATES[state], (selected ? 1 : 0) + (hovered ? 2 : 0)]));
 
 function apply(view, paint) {
   for (const [method, ...values] of paint) view[method](...values);

@@ -2,14 +2,15 @@
 import { facts } from './controls.js';
 import { show } from './dom.js';
 import { count, number } from './format.js';
+import { stepNamed } from './steps/index.js';
 
 const AWAY = 16;
 
 /** @param {HTMLElement} host @param {import('./app.js').App} app */
 export function tag(host, app) {
   return (at) => {
-    host.hidden = !at;
-    if (!at) return;
+    host.hidden = !at || Boolean(stepNamed(app.step).points);
+    if (host.hidden) return;
     const face = at.pick[0];
     const { result } = app;
     show(host, facts([

@@ -5,6 +5,7 @@ import { number } from './format.js';
 /** Poses a second where the files have no time. */
 const UNTIMED_RATE = 3;
 const SPEEDS = [0.25, 0.5, 1, 2];
+const CALM = matchMedia('(prefers-reduced-motion: reduce)');
 /** Beyond this many, ticks would be a grey bar. */
 const MOST_TICKS = 160;
 
@@ -17,9 +18,13 @@ export class Timeline {
     this.speed = 1;
     this.reference = false;
     this.playing = false;
+    this.rested = false;
     this.last = null;
     this.#build();
     app.on('source', () => this.#open());
+    app.on('play', () => CALM.matches || this.setPlaying(true));
+    app.on('rest', () => this.#rest());
+    app.on('resume', () => this.#resume());
     app.stage.addEventListener('tick', ({ now }) => this.#tick(now));
   }
 
@@ -64,6 +69,18 @@ export class Timeline {
     this.app.changed('link');
   }
 
+  /** Shows the reference for as long as something is to be looked at closely. */
+  #rest() {
+    this.rested = this.playing;
+    if (!this.reference) this.toggleReference();
+  }
+
+  /** Goes on if that was the visitor's last word. */
+  #resume() {
+    if (this.rested && this.reference) this.setPlaying(true);
+    this.rested = false;
+  }
+
   #build() {
     this.play = h('button', { type: 'button', class: 'icon-button strong', on: { click: () => this.toggle() } });
     this.ticks = svg('svg', { class: 'ticks', 'aria-hidden': 'true', preserveAspectRatio: 'none' });
@@ -86,7 +103,7 @@ export class Timeline {
     this.range.max = this.end;
     this.time = 0;
     this.reference = false;
-    this.playing = this.poses > 1 && !matchMedia('(prefers-reduced-motion: reduce)').matches;
+    this.playing = this.poses > 1 && !CALM.matches;
     this.seconds = times(sequence);
     const every = Math.ceil((this.poses || 1) / MOST_TICKS);
     this.ticks.setAttribute('viewBox', `0 0 ${this.end || 1} 1`);
@@ -99,7 +116,7 @@ export class Timeline {
   #tick(now) {
     const passed = this.last == null ? 0 : Math.min(0.1, (now - this.last) / 1000);
     this.last = now;
-    if (!this.playing || this.poses < 2) return;
+    if (!this.playing || this.poses < 2 || this.app.held) return;
     const length = this.seconds.at(-1);
     const second = wrap(at(this.seconds, this.time) + passed * this.speed, length);
     this.time = Math.min(inverse(this.seconds, second), this.end);
@@ -110,6 +127,7 @@ export class Timeline {
     const still = this.reference || this.poses === 0;
     const shown = this.app.sequence?.loop ? wrap(this.time, this.end || 1) : this.time;
     this.app.stage.time = still ? -1 : shown;
+    if (this.app.transfer.motion) this.app.second.time = still ? -1 : shown;
     this.range.valueAsNumber = this.time;
     const label = this.playing ? 'Pause (space)' : 'Play (space)';
     if (this.play.title !== label) {

@@ -21,6 +21,16 @@ const operations = {
   segment: ({ parameters }, progress) => engine.segment(parameters, progress),
   parts: ({ parameters, parts }, progress) => engine.parts(parameters, parts, progress),
   export: ({ labels, colours }) => engine.export(labels, colours),
+  keypoints: ({ parameters }, progress) => engine.keypoints(parameters, progress),
+  fit: ({ points, parameters }) => engine.fit(points, parameters),
+  target: ({ files, recipe, options }) => (recipe ? engine.target_zoo(recipe) : engine.target(files, options)),
+  restore_target: ({ kept }) => engine.restore_target(kept),
+  drop_target: () => engine.drop_target(),
+  propose: ({ points, known }) => engine.propose(points, known),
+  target_weights: ({ points }) => engine.target_weights(points),
+  landmarks: ({ source, target }) => Engine.landmarks(source, target),
+  transfer: ({ pairs, parameters, quick }, progress) => engine.transfer(pairs, parameters, quick, progress),
+  export_transfer: ({ form }) => engine.export_transfer(form),
 };
 
 let queue = Promise.resolve();

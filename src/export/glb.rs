@@ -5,21 +5,16 @@
 //! the other at their times. That plays back exactly the positions of the sequence (as 32-bit floats) in any
 //! viewer, whatever made them move.
 
+use super::container::{Writer, single};
+use super::timing;
 use crate::sequence::Sequence;
 use glam::{DVec3, Vec3};
 use serde_json::{Value, json};
 
 /// Normals are written for smooth shading unless positions alone take more bytes than this; then viewers shade flat.
 const SMOOTH_LIMIT: usize = 24 << 20;
-/// Seconds between poses whose own times cannot be used.
-const STEP: f32 = 1.0 / 12.0;
 /// Colour of parts that were given none.
 const GREY: [f32; 3] = [0.5; 3];
-
-const FLOAT: u32 = 5126;
-const UNSIGNED_INT: u32 = 5125;
-const ARRAY_BUFFER: u32 = 34962;
-const ELEMENT_ARRAY_BUFFER: u32 = 34963;
 
 /// The sequence as a GLB file with one primitive and one material a part, called "part 1" and so on.
 ///
@@ -34,7 +29,7 @@ pub fn parts(sequence: &Sequence, labels: &[u32], colours: &[[f32; 3]]) -> Vec<u
 pub fn named_parts(sequence: &Sequence, labels: &[u32], colours: &[[f32; 3]], names: &[String]) -> Vec<u8> {
     let mut file = Writer::default();
     let mut document = json!({
-        "asset": { "version": "2.0", "generator": "Sinew" },
+        "asset": Writer::asset(),
         "scene": 0,
         "scenes": [{ "nodes": [0] }],
         "nodes": [{ "name": sequence.name() }],
@@ -79,7 +74,7 @@ fn faces_by_part(faces: &[[u32; 3]], labels: &[u32]) -> Vec<(u32, Vec<[u32; 3]>)
     chunks.map(|chunk| (chunk[0].0, chunk.iter().map(|&(_, f)| faces[f]).collect())).collect()
 }
 
-fn material(part: u32, colours: &[[f32; 3]], names: &[String]) -> Value {
+pub(super) fn material(part: u32, colours: &[[f32; 3]], names: &[String]) -> Value {
     let [r, g, b] = colours
         .get(part as usize)
         .filter(|colour| colour.iter().all(|c| c.is_finite()))
@@ -127,7 +122,7 @@ impl Vertices {
 }
 
 /// Area-weighted unit normals; +y where there is none.
-fn normals(faces: &[[u32; 3]], positions: &[DVec3]) -> Vec<Vec3> {
+pub(super) fn normals(faces: &[[u32; 3]], positions: &[DVec3]) -> Vec<Vec3> {
     let mut sums = vec![DVec3::ZERO; positions.len()];
     for corners in faces {
         let [a, b, c] = corners.map(|v| positions[v as usize]);
@@ -139,161 +134,25 @@ fn normals(faces: &[[u32; 3]], positions: &[DVec3]) -> Vec<Vec3> {
     sums.into_iter().map(|n| n.try_normalize().unwrap_or(DVec3::Y).as_vec3().normalize_or(Vec3::Y)).collect()
 }
 
-fn single(p: DVec3) -> Vec3 {
-    const LIMIT: f64 = f32::MAX as f64;
-    p.clamp(DVec3::splat(-LIMIT), DVec3::splat(LIMIT)).as_vec3()
-}
-
 /// One weight a pose, 1 at its own time.
 fn animation(sequence: &Sequence, file: &mut Writer) -> Value {
     let poses = sequence.poses().len();
-    let mut times = key_times(sequence);
-    let closing = closes(sequence);
-    if closing {
-        let last = times.last().copied().unwrap_or(0.0);
-        times.push(last + (last - times[0]) / (poses - 1) as f32);
+    let mut times = timing::from_zero(sequence.poses().iter().map(|pose| pose.time));
+    let positions: Vec<&[DVec3]> = sequence.poses().iter().map(|pose| pose.positions.as_slice()).collect();
+    if timing::closes(poses, |a, b| timing::step(positions[a], positions[b])) {
+        timing::close(&mut times);
     }
     let mut weights = vec![0.0f32; times.len() * poses];
     for key in 0..times.len() {
         weights[key * poses + key % poses] = 1.0;
     }
-    let input = file.scalars(&times, true);
-    let output = file.scalars(&weights, false);
+    let input = file.times(&times);
+    let output = file.scalars(&weights);
     json!({
         "name": sequence.name(),
         "samplers": [{ "input": input, "output": output, "interpolation": "LINEAR" }],
         "channels": [{ "sampler": 0, "target": { "node": 0, "path": "weights" } }],
     })
-}
-
-/// The times of the poses from 0 on, if they rise; else evenly spaced ones.
-fn key_times(sequence: &Sequence) -> Vec<f32> {
-    let first = sequence.poses().first().map_or(0.0, |pose| pose.time);
-    let times: Vec<f32> = sequence.poses().iter().map(|pose| (pose.time - first) as f32).collect();
-    let rise = times.windows(2).all(|pair| pair[0] < pair[1]) && times.iter().all(|t| t.is_finite());
-    if rise { times } else { (0..times.len()).map(|i| i as f32 * STEP).collect() }
-}
-
-/// Whether the step from the last pose to the first is one like the others (and not none).
-fn closes(sequence: &Sequence) -> bool {
-    let poses = sequence.poses();
-    let (Some(first), Some(last)) = (poses.first(), poses.last()) else { return false };
-    if poses.len() < 3 {
-        return false;
-    }
-    let step = |a: &[DVec3], b: &[DVec3]| a.iter().zip(b).map(|(a, b)| a.distance(*b)).sum::<f64>();
-    let longest = poses.windows(2).map(|pair| step(&pair[0].positions, &pair[1].positions)).fold(0.0, f64::max);
-    let back = step(&last.positions, &first.positions);
-    back > 1e-6 * longest && back <= 1.5 * longest
-}
-
-/// Collects binary data with the views and accessors that describe it.
-#[derive(Default)]
-struct Writer {
-    accessors: Vec<Value>,
-    vectors: Vec<u8>,
-    indices: Vec<u8>,
-    scalars: Vec<u8>,
-}
-
-/// The views, in the order of their numbers.
-const VECTORS: usize = 0;
-const INDICES: usize = 1;
-const SCALARS: usize = 2;
-
-impl Writer {
-    fn accessor(&mut self, accessor: Value) -> usize {
-        self.accessors.push(accessor);
-        self.accessors.len() - 1
-    }
-
-    fn vectors(&mut self, values: &[Vec3]) -> usize {
-        let offset = self.vectors.len();
-        let (mut low, mut high) = (Vec3::INFINITY, Vec3::NEG_INFINITY);
-        for value in values {
-            low = low.min(*value);
-            high = high.max(*value);
-            for c in value.to_array() {
-                self.vectors.extend_from_slice(&c.to_le_bytes());
-            }
-        }
-        self.accessor(json!({
-            "bufferView": VECTORS, "byteOffset": offset, "componentType": FLOAT, "count": values.len(), "type": "VEC3",
-            "min": low.as_dvec3().to_array(), "max": high.as_dvec3().to_array(),
-        }))
-    }
-
-    fn indices(&mut self, faces: &[[u32; 3]]) -> usize {
-        let offset = self.indices.len();
-        for corner in faces.iter().flatten() {
-            self.indices.extend_from_slice(&corner.to_le_bytes());
-        }
-        self.accessor(json!({
-            "bufferView": INDICES, "byteOffset": offset, "componentType": UNSIGNED_INT, "count": 3 * faces.len(),
-            "type": "SCALAR",
-        }))
-    }
-
-    /// Values that rise or whose range does not matter.
-    fn scalars(&mut self, values: &[f32], with_range: bool) -> usize {
-        let offset = self.scalars.len();
-        for value in values {
-            self.scalars.extend_from_slice(&value.to_le_bytes());
-        }
-        let mut accessor = json!({
-            "bufferView": SCALARS, "byteOffset": offset, "componentType": FLOAT, "count": values.len(), "type": "SCALAR",
-        });
-        if let (true, Some(first), Some(last)) = (with_range, values.first(), values.last()) {
-            accessor["min"] = json!([f64::from(*first)]);
-            accessor["max"] = json!([f64::from(*last)]);
-        }
-        self.accessor(accessor)
-    }
-
-    /// Puts document and data together: a header and two chunks, each padded to four bytes.
-    fn finish(self, mut document: Value) -> Vec<u8> {
-        let Self { accessors, vectors, indices, scalars } = self;
-        let mut binary = Vec::with_capacity(vectors.len() + indices.len() + scalars.len());
-        let mut views = Vec::new();
-        // All data are 32-bit values, so every view starts at a multiple of four.
-        for (data, more) in [
-            (vectors, json!({ "byteStride": 12, "target": ARRAY_BUFFER })),
-            (indices, json!({ "target": ELEMENT_ARRAY_BUFFER })),
-            (scalars, json!({})),
-        ] {
-            if data.is_empty() {
-                continue;
-            }
-            let mut view = more;
-            view["buffer"] = json!(0);
-            view["byteOffset"] = json!(binary.len());
-            view["byteLength"] = json!(data.len());
-            views.push(view);
-            binary.extend_from_slice(&data);
-        }
-        if !binary.is_empty() {
-            document["accessors"] = json!(accessors);
-            document["bufferViews"] = json!(views);
-            document["buffers"] = json!([{ "byteLength": binary.len() }]);
-        }
-        let mut text = document.to_string().into_bytes();
-        text.resize(text.len().next_multiple_of(4), b' ');
-        let data = if binary.is_empty() { 0 } else { 8 + binary.len() };
-        let mut file = Vec::with_capacity(20 + text.len() + data);
-        let length = |n: usize| u32::try_from(n).unwrap_or(u32::MAX).to_le_bytes();
-        file.extend_from_slice(b"glTF");
-        file.extend_from_slice(&2u32.to_le_bytes());
-        file.extend_from_slice(&length(20 + text.len() + data));
-        file.extend_from_slice(&length(text.len()));
-        file.extend_from_slice(b"JSON");
-        file.extend_from_slice(&text);
-        if !binary.is_empty() {
-            file.extend_from_slice(&length(binary.len()));
-            file.extend_from_slice(b"BIN\0");
-            file.extend_from_slice(&binary);
-        }
-        file
-    }
 }
 
 #[cfg(test)]
@@ -367,6 +226,6 @@ mod tests {
         let bytes = parts(&same_time, &[0, 0], &[[2.0, f32::NAN, 0.0]]);
         let gltf = gltf::Gltf::from_slice(&bytes).unwrap();
         let input = gltf.animations().next().unwrap().channels().next().unwrap().sampler().input();
-        assert_eq!(floats(gltf.blob.as_deref().unwrap(), &input), [0.0, STEP]);
+        assert_eq!(floats(gltf.blob.as_deref().unwrap(), &input), [0.0, timing::STEP]);
     }
 }

@@ -1,4 +1,8 @@
 //! From results to files: GLB, OBJ, reports.
 
+pub mod animation;
+mod container;
 pub mod glb;
 pub mod labels;
+pub mod skin;
+mod timing;

@@ -167,7 +167,7 @@ impl Energy {
         scratch.place[one as usize] = FIXED;
         field.value[one as usize] = 1.0;
         for round in 0..ROUNDS {
-                self.solve(&mut field, scratch);
+            self.solve(&mut field, scratch);
             let changed = self.mend(&mut field, scratch, 2 * round < ROUNDS);
             if !changed {
                 break;
@@ -198,6 +198,7 @@ impl Energy {
     }
 
     /// The least energy over the free vertices.
+    #[allow(clippy::needless_range_loop, reason = "v walks several arrays at once")]
     fn solve(&self, field: &mut Field, scratch: &mut Scratch) {
         let Scratch { place, free, first, at, band, x } = scratch;
         free.clear();

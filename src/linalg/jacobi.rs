@@ -5,7 +5,16 @@
 
 /// The largest eigenvalue of a symmetric matrix and a unit eigenvector of it. Where the eigenvalue is repeated, one of
 /// its eigenvectors; for the zero matrix, the first axis.
-pub fn largest_eigenpair<const N: usize>(mut a: [[f64; N]; N]) -> (f64, [f64; N]) {
+pub fn largest_eigenpair<const N: usize>(a: [[f64; N]; N]) -> (f64, [f64; N]) {
+    let (values, v) = eigen(a, 1e-16);
+    let largest = (1..N).fold(0, |best, i| if values[i] > values[best] { i } else { best });
+    (values[largest], std::array::from_fn(|i| v[i][largest]))
+}
+
+/// The eigenvalues of a symmetric matrix and, in the columns of a rotation, its eigenvectors, which stay as near to
+/// the axes as they can: no rotation is by more than 45°, and there is none where what lies off the diagonal is no
+/// more than `negligible` times the norm of the matrix. So equal eigenvalues leave their axes alone.
+pub fn eigen<const N: usize>(mut a: [[f64; N]; N], negligible: f64) -> ([f64; N], [[f64; N]; N]) {
     let mut v = [[0.0; N]; N];
     for (i, row) in v.iter_mut().enumerate() {
         row[i] = 1.0;
@@ -13,7 +22,7 @@ pub fn largest_eigenpair<const N: usize>(mut a: [[f64; N]; N]) -> (f64, [f64; N]
     let size: f64 = a.iter().flatten().map(|x| x * x).sum();
     for _sweep in 0..30 {
         let off: f64 = (0..N).flat_map(|p| (p + 1..N).map(move |q| (p, q))).map(|(p, q)| a[p][q] * a[p][q]).sum();
-        if off <= 1e-32 * size {
+        if off <= negligible * negligible * size {
             break;
         }
         for p in 0..N {
@@ -22,8 +31,7 @@ pub fn largest_eigenpair<const N: usize>(mut a: [[f64; N]; N]) -> (f64, [f64; N]
             }
         }
     }
-    let largest = (1..N).fold(0, |best, i| if a[i][i] > a[best][best] { i } else { best });
-    (a[largest][largest], std::array::from_fn(|i| v[i][largest]))
+    (std::array::from_fn(|i| a[i][i]), v)
 }
 
 /// Makes `a[p][q]` zero by a rotation in the plane of axes p and q, collected in the columns of `v`.

@@ -215,6 +215,20 @@ impl Camera {
         })
     }
 
+    /// The six numbers with lengths in radii of `ball` and places from its middle, so that they show another figure
+    /// in the same way.
+    pub fn numbers_about(&self, ball: Ball) -> [f32; 6] {
+        let target = (self.target - ball.centre) / ball.radius;
+        Self { target, distance: self.distance / ball.radius, ..*self }.numbers()
+    }
+
+    /// The camera of the numbers of [`Camera::numbers_about`]; `None` if they are not a camera.
+    pub fn from_numbers_about(numbers: &[f32], ball: Ball) -> Option<Self> {
+        let camera = Self::from_numbers(numbers)?;
+        let target = ball.centre + camera.target.clamp_length_max(100.0) * ball.radius;
+        Some(Self { target, distance: camera.distance.clamp(0.01, 1000.0) * ball.radius, ..camera })
+    }
+
     fn keep_near(&mut self, scene: Ball) {
         self.target = scene.centre + (self.target - scene.centre).clamp_length_max(3.0 * scene.radius);
     }
@@ -308,6 +322,23 @@ mod tests {
         camera.pan(&WINDOW, SCENE, 30.0, -12.0);
         let after = project(&camera, p);
         assert!((after - before).truncate().distance(glam::Vec2::new(30.0, -12.0)) < 0.05);
+    }
+
+    #[test]
+    fn linked_cameras_see_their_figures_alike() {
+        // The same figure, ten times as large and elsewhere.
+        let other = Ball { centre: Vec3::new(-40.0, 3.0, 8.0), radius: 10.0 * SCENE.radius };
+        let camera = camera();
+        let linked = Camera::from_numbers_about(&camera.numbers_about(SCENE), other).unwrap();
+        for aside in [Vec3::ZERO, Vec3::X, Vec3::new(-0.3, 0.8, 0.4)] {
+            let here = project(&camera, SCENE.centre + aside * SCENE.radius);
+            let ndc = linked.projection(&WINDOW, other).project_point3(other.centre + aside * other.radius);
+            let there = Vec3::new((ndc.x + 1.0) * 0.5 * WINDOW.width, (1.0 - ndc.y) * 0.5 * WINDOW.height, ndc.z);
+            assert!(here.distance(there) < 0.02, "{here} {there}");
+        }
+        let back = Camera::from_numbers_about(&linked.numbers_about(other), SCENE).unwrap();
+        assert!(back.target.distance(camera.target) < 1e-4 && (back.distance - camera.distance).abs() < 1e-4);
+        assert_eq!(Camera::from_numbers_about(&[f32::NAN; 6], SCENE), None);
     }
 
     #[test]

@@ -4,7 +4,7 @@ use super::colour::{Srgb, oklch, srgb_to_linear};
 use glam::{Mat4, Vec3, Vec4};
 
 /// Number of 32-bit floats in the struct.
-pub const FLOATS: usize = 2 * 16 + 21 * 4;
+pub const FLOATS: usize = 2 * 16 + 22 * 4;
 
 /// The struct `Stage`.
 #[derive(Clone, Copy, Debug, Default)]
@@ -22,6 +22,7 @@ pub struct Frame {
     pub lines: Vec4,
     pub moment: Vec4,
     pub flow: Vec4,
+    pub field: Vec4,
     pub theme: Theme,
 }
 
@@ -58,6 +59,7 @@ impl Frame {
             self.lines,
             self.moment,
             self.flow,
+            self.field,
             t.key_light,
             t.sky_light,
             t.ground_light,

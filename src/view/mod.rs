@@ -1,5 +1,6 @@
 //! Drawing: camera, palettes, picking (plain), and the GPU stage (in the page bundle only).
 
+pub mod board;
 pub mod camera;
 pub mod colormap;
 pub mod colour;
@@ -12,5 +13,9 @@ pub mod normals;
 pub mod paint;
 pub mod palette;
 pub mod picking;
+pub mod pins;
+pub mod sight;
+pub mod skin;
 pub mod stage;
 pub mod surface;
+pub mod vertex_paint;

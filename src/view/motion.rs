@@ -1,6 +1,7 @@
 //! The figure on the stage: faces, reference and poses, and what is in between at a given time.
 
 use super::camera::Ball;
+use super::skin::{Map, Skin};
 use glam::Vec3;
 
 /// Faces and positions, checked.
@@ -9,6 +10,8 @@ pub struct Motion {
     faces: Vec<[u32; 3]>,
     reference: Vec<Vec3>,
     poses: Vec<Vec3>,
+    /// What moves the reference instead of poses.
+    skin: Option<Skin>,
 }
 
 /// A moment between two shapes. Shape 0 is the reference, shape k > 0 the pose k − 1.
@@ -66,7 +69,7 @@ impl Motion {
             return Err("A face of this mesh names a vertex that does not exist.");
         }
         let faces = faces.chunks_exact(3).map(|c| [c[0], c[1], c[2]]).collect();
-        Ok(Self { faces, reference, poses: Vec::new() })
+        Ok(Self { faces, reference, poses: Vec::new(), skin: None })
     }
 
     /// Puts other poses in place of those there are: T·3·#V coordinates. The error is a sentence.
@@ -76,7 +79,32 @@ impl Motion {
             return Err("The poses have another number of vertices than the mesh.");
         }
         self.poses = points(positions)?;
+        self.skin = None;
         Ok(())
+    }
+
+    /// Puts a skin in place of the poses: see [`Skin::new`].
+    pub fn set_skin(
+        &mut self,
+        handles: usize,
+        indices: &[u16],
+        weights: &[f32],
+        each: usize,
+        matrices: &[f32],
+    ) -> Result<(), &'static str> {
+        self.skin = Some(Skin::new(&self.reference, handles, indices, weights, each, matrices)?);
+        self.poses = Vec::new();
+        Ok(())
+    }
+
+    /// Puts other maps into the skin: see [`Skin::set_maps`].
+    pub fn set_maps(&mut self, matrices: &[f32]) -> Result<(), &'static str> {
+        self.skin.as_mut().ok_or("There is no skin to move.")?.set_maps(matrices)
+    }
+
+    /// The skin, where one moves the mesh.
+    pub fn skin(&self) -> Option<&Skin> {
+        self.skin.as_ref()
     }
 
     /// #F triples of vertex numbers.
@@ -91,10 +119,14 @@ impl Motion {
 
     /// Number of poses, the reference not counted.
     pub fn poses(&self) -> usize {
+        if let Some(skin) = &self.skin {
+            return skin.poses();
+        }
         self.poses.len().checked_div(self.reference.len()).unwrap_or(0)
     }
 
-    /// #V positions of a shape: 0 is the reference, k > 0 the pose k − 1; the reference where there is no such pose.
+    /// #V positions of a shape: 0 is the reference, k > 0 the pose k − 1; the reference where there is no such pose or
+    /// a skin moves the mesh.
     pub fn shape(&self, shape: usize) -> &[Vec3] {
         let n = self.reference.len();
         shape.checked_sub(1).and_then(|k| self.poses.get(k * n..(k + 1) * n)).unwrap_or(&self.reference)
@@ -126,9 +158,27 @@ impl Motion {
 
     /// #V positions at a moment, into `out`.
     pub fn positions(&self, moment: Moment, out: &mut Vec<Vec3>) {
+        if let Some(skin) = &self.skin {
+            skin.positions(&self.reference, &skin.maps(moment), out);
+            return;
+        }
         let (from, to) = (self.shape(moment.from), self.shape(moment.to));
         out.clear();
         out.extend(from.iter().zip(to).map(|(&a, &b)| a.lerp(b, moment.part)));
+    }
+
+    /// The skin's maps at a moment; none without a skin.
+    pub fn maps(&self, moment: Moment) -> Vec<Map> {
+        self.skin.as_ref().map_or_else(Vec::new, |skin| skin.maps(moment))
+    }
+
+    /// Where a vertex is at a moment; `maps` are those of [`Motion::maps`].
+    pub fn vertex(&self, vertex: u32, moment: Moment, maps: &[Map]) -> Option<Vec3> {
+        let v = vertex as usize;
+        match &self.skin {
+            Some(skin) => Some(skin.place(v, *self.reference.get(v)?, maps)),
+            None => Some(self.shape(moment.from).get(v)?.lerp(*self.shape(moment.to).get(v)?, moment.part)),
+        }
     }
 
     /// The box around the reference.
@@ -136,17 +186,34 @@ impl Motion {
         Extent::of(self.reference.iter())
     }
 
+    /// The box around a shape.
+    pub fn shape_extent(&self, shape: usize) -> Extent {
+        match &self.skin {
+            Some(skin) => skin.extent(&self.reference, shape),
+            None => Extent::of(self.shape(shape).iter()),
+        }
+    }
+
     /// The box around all poses; around the reference if there are none.
     pub fn extent(&self) -> Extent {
-        if self.poses.is_empty() { self.reference_extent() } else { Extent::of(self.poses.iter()) }
+        if self.poses() == 0 {
+            return self.reference_extent();
+        }
+        match &self.skin {
+            Some(_) => Extent::of(self.sample(false).iter()),
+            None => Extent::of(self.poses.iter()),
+        }
     }
 
     /// Points that stand for the whole motion (or for the reference alone): every vertex, or evenly taken ones where
-    /// there are very many.
-    pub fn sample(&self, reference: bool) -> impl Iterator<Item = Vec3> {
+    /// there are very many, or those that stand out where a skin moves the mesh.
+    pub fn sample(&self, reference: bool) -> Vec<Vec3> {
+        if let (Some(skin), false) = (&self.skin, reference || self.poses() == 0) {
+            return (1..=self.poses()).flat_map(|shape| skin.outline(&self.reference, shape)).collect();
+        }
         let all = if reference || self.poses.is_empty() { &self.reference } else { &self.poses };
         // A stride that shares no factor with a likely number of vertices would be nicer; the loss is invisible.
-        all.iter().step_by(all.len() / 150_000 + 1).copied()
+        all.iter().step_by(all.len() / 150_000 + 1).copied().collect()
     }
 }
 
@@ -198,6 +265,33 @@ mod tests {
         assert!(motion().set_poses(&[0.0; 10]).is_err());
         assert!(motion().set_poses(&[f32::INFINITY; 9]).is_err());
         assert!(Motion::default().set_poses(&[0.0; 3]).is_err());
+    }
+
+    #[test]
+    fn a_skin_moves_like_the_poses_it_makes() {
+        let mut skinned = motion();
+        let shift = |x: f32| [1.0, 0.0, 0.0, x, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0, 1.0, 0.0];
+        let matrices: Vec<f32> = [shift(2.0), shift(-2.0), shift(5.0), shift(3.0)].concat();
+        skinned.set_skin(2, &[0, 1, 0, 1, 1, 0], &[0.5, 0.5, 1.0, 0.0, 0.75, 0.25], 2, &matrices).unwrap();
+        let mut posed = motion();
+        let pose = [0.0, 0.0, 0.0, 3.0, 0.0, 0.0, -1.0, 1.0, 0.0, 4.0, 0.0, 0.0, 6.0, 0.0, 0.0, 3.5, 1.0, 0.0];
+        posed.set_poses(&pose).unwrap();
+        let (mut a, mut b) = (Vec::new(), Vec::new());
+        for t in [-1.0, -0.5, 0.0, 0.3, 1.0, 1.5] {
+            let moment = skinned.at(t, true);
+            assert_eq!(moment, posed.at(t, true));
+            skinned.positions(moment, &mut a);
+            posed.positions(moment, &mut b);
+            assert!(a.iter().zip(&b).all(|(p, q)| p.distance(*q) < 1e-5), "{a:?} {b:?}");
+            let maps = skinned.maps(moment);
+            for v in 0..3 {
+                assert_eq!(skinned.vertex(v, moment, &maps), Some(a[v as usize]));
+                assert_eq!(posed.vertex(v, moment, &[]), Some(b[v as usize]));
+            }
+        }
+        assert_eq!(skinned.extent(), posed.extent());
+        assert_eq!(skinned.vertex(9, skinned.at(0.0, false), &[]), None);
+        assert!(skinned.set_maps(&[0.0; 13]).is_err() && posed.set_maps(&[]).is_err());
     }
 
     #[test]

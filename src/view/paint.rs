@@ -1,10 +1,12 @@
-//! What colour each face has, which edges have a line, and what is marked: two words a face for the shaders.
+//! What colour each face has, which edges have a line, and what is marked: four words a face for the shaders.
 
 use super::colormap::ColourMap;
 use super::colour::Srgb;
 use super::flow::spread;
+use super::motion::Motion;
 use super::palette::Palette;
 use super::surface::Surface;
+use super::vertex_paint::VertexPaint;
 
 /// Unpainted clay.
 pub const CLAY: Srgb = [214, 202, 188];
@@ -25,6 +27,8 @@ pub struct Paint {
     arrivals: Vec<u8>,
     /// Palette numbers of the parts, in their order.
     slots: Vec<usize>,
+    /// What lies on the vertices instead of the faces' colours.
+    vertices: Option<VertexPaint>,
     palette: Palette,
 }
 
@@ -41,6 +45,7 @@ impl Paint {
     pub fn clay(&mut self) {
         self.colours = vec![CLAY; self.marks.len()];
         self.labels.clear();
+        self.vertices = None;
     }
 
     /// Parts: `labels` is #F numbers below `count`. A part takes the colour that most of its faces had in the last
@@ -55,6 +60,7 @@ impl Paint {
         let colours: Vec<Srgb> = self.slots.iter().map(|&s| self.palette.colour(s)).collect();
         self.colours = labels.iter().map(|&l| colours[l as usize]).collect();
         self.labels = labels.to_vec();
+        self.vertices = None;
         Ok(())
     }
 
@@ -68,7 +74,44 @@ impl Paint {
         let colour = |&v: &f32| if v.is_nan() { CLAY } else { table[place(v).min(255)] };
         self.colours = values.iter().map(colour).collect();
         self.labels.clear();
+        self.vertices = None;
         Ok(())
+    }
+
+    /// A field on `vertices` vertices: `values` is as many numbers, `low` and `high` are the ends of the map. The
+    /// error is a sentence.
+    pub fn vertices(
+        &mut self,
+        vertices: usize,
+        values: &[f32],
+        low: f32,
+        high: f32,
+        map: ColourMap,
+    ) -> Result<(), &'static str> {
+        if values.len() != vertices {
+            return Err("The paint has another number of vertices than the mesh.");
+        }
+        self.clay();
+        self.vertices = Some(VertexPaint::field(values, low, high, map));
+        Ok(())
+    }
+
+    /// Groups of the vertices of `motion`: `labels` is #V numbers below `count`. The error is a sentence.
+    pub fn groups(&mut self, motion: &Motion, labels: &[u32], count: usize) -> Result<(), &'static str> {
+        let paint = VertexPaint::groups(motion, labels, count, &self.palette)?;
+        self.clay();
+        self.vertices = Some(paint);
+        Ok(())
+    }
+
+    /// The colours of the groups that are painted, in their order.
+    pub fn group_colours(&self) -> &[Srgb] {
+        self.vertices.as_ref().map_or(&[], VertexPaint::group_colours)
+    }
+
+    /// The colours of what lies on the vertices, where something does: see [`VertexPaint::table`].
+    pub fn table(&self) -> Option<Vec<[u8; 4]>> {
+        self.vertices.as_ref().map(VertexPaint::table)
     }
 
     /// Two colours: `mask` is #F numbers, not 0 for the faces of the set. The error is a sentence.
@@ -76,6 +119,7 @@ impl Paint {
         self.check(mask.len())?;
         self.colours = mask.iter().map(|&m| SET[usize::from(m != 0)]).collect();
         self.labels = mask.iter().map(|&m| u32::from(m != 0)).collect();
+        self.vertices = None;
         Ok(())
     }
 
@@ -105,18 +149,25 @@ impl Paint {
         self.labels.get(face).copied()
     }
 
-    /// Two words a face: red, green, blue and mark (0 none, else style + 1) in a byte each, lowest first; boundary
-    /// bits in the low byte, the label plus one (0 for none) in the two above, when the paint arrives in the top one.
-    pub fn words(&self, surface: &Surface, faces: &[[u32; 3]]) -> Vec<[u32; 2]> {
+    /// Four words a face: red, green, blue and mark (0 none, else style + 1) in a byte each, lowest first; boundary
+    /// bits in the low byte, the label plus one (0 for none) in the two above, when the paint arrives in the top one; two words of what lies
+    /// on the vertices (see [`VertexPaint::words`]), else 0.
+    pub fn words(&self, surface: &Surface, faces: &[[u32; 3]]) -> Vec<[u32; 4]> {
         let bits = if self.labels.is_empty() { Vec::new() } else { surface.boundary_bits(faces, &self.labels) };
         let word = |(f, colour): (usize, &Srgb)| {
             let mark = 8 - self.marks.get(f).copied().unwrap_or(0).leading_zeros();
             let low = u32::from_le_bytes([colour[0], colour[1], colour[2], mark as u8]);
             let label = self.labels.get(f).map_or(0, |&l| l.saturating_add(1).min(0xFFFF));
             let arrival = u32::from(self.arrivals.get(f).copied().unwrap_or(0));
-            [low, u32::from(bits.get(f).copied().unwrap_or(0)) | label << 8 | arrival << 24]
+            [low, u32::from(bits.get(f).copied().unwrap_or(0)) | label << 8 | arrival << 24, 0, 0]
         };
-        self.colours.iter().enumerate().map(word).collect()
+        let mut words: Vec<[u32; 4]> = self.colours.iter().enumerate().map(word).collect();
+        if let Some(vertices) = &self.vertices {
+            for (word, [z, w]) in words.iter_mut().zip(vertices.words(faces)) {
+                (word[2], word[3]) = (z, w);
+            }
+        }
+        words
     }
 
     fn check(&self, found: usize) -> Result<(), &'static str> {
@@ -226,5 +277,25 @@ mod tests {
         paint.mark(&[], 2);
         assert_eq!(paint.words(&surface, motion.faces())[1][0] >> 24, 1);
         paint.scalar(&values, f32::NAN, f32::NAN, ColourMap::Diverging).unwrap();
+    }
+
+    #[test]
+    fn what_lies_on_vertices_goes_with_the_next_paint() {
+        let (motion, surface, mut paint) = painted();
+        paint.parts(&surface, &[0; 8], 1).unwrap();
+        paint.vertices(10, &[0.5; 10], 0.0, 1.0, ColourMap::Viridis).unwrap();
+        let words = paint.words(&surface, motion.faces());
+        assert!(words.iter().all(|w| w[3] >> 16 == 1 && w[1] & 63 == 0));
+        assert!(paint.table().is_some() && paint.group_colours().is_empty());
+        paint.groups(&motion, &[0, 0, 0, 0, 0, 0, 1, 1, 1, 1], 2).unwrap();
+        assert_eq!(paint.group_colours().len(), 2);
+        assert!(
+            paint.groups(&motion, &[0; 9], 2).is_err()
+                && paint.vertices(10, &[], 0.0, 1.0, ColourMap::Viridis).is_err()
+        );
+        assert_eq!(paint.group_colours().len(), 2, "what cannot be painted changes nothing");
+        paint.set(&[1; 8]).unwrap();
+        assert!(paint.table().is_none());
+        assert!(paint.words(&surface, motion.faces()).iter().all(|w| w[2] == 0 && w[3] == 0));
     }
 }

@@ -1,11 +1,15 @@
 //! The stage: the figure, its paint, the camera and the light, and what of it the GPU does not have yet.
 
+use super::board::Board;
 use super::camera::{Ball, Camera, Window};
+use super::colormap::ColourMap;
 use super::colour::srgb_to_linear;
 use super::frame::{Frame, Theme, light_map};
 use super::motion::{Extent, Moment, Motion};
 use super::paint::{CLAY, Paint};
 use super::picking::{Hit, pick};
+use super::pins::{self, Pin, Spot};
+use super::skin::{Map, Skin};
 use super::surface::Surface;
 use glam::Vec3;
 
@@ -23,6 +27,7 @@ pub struct Stage {
     pub paint: Paint,
     /// Where one looks from.
     pub camera: Camera,
+    board: Board,
     window: Window,
     pixel_ratio: f32,
     time: f32,
@@ -30,6 +35,7 @@ pub struct Stage {
     dark: bool,
     boundaries: bool,
     wires: bool,
+    contours: bool,
     plain: bool,
     flow: f32,
     hovered: Option<usize>,
@@ -49,8 +55,17 @@ pub struct Stale {
     pub surface: bool,
     /// The paint.
     pub paint: bool,
+    /// What moves the vertices, where a skin does.
+    pub skin: bool,
+    /// How it moves them.
+    pub maps: bool,
     /// Anything.
     pub picture: bool,
+}
+
+impl Stale {
+    const ALL: Self = Self { surface: true, paint: true, skin: true, maps: true, picture: true };
+    const NOTHING: Self = Self { surface: false, paint: false, skin: false, maps: false, picture: false };
 }
 
 impl Default for Stage {
@@ -61,6 +76,7 @@ impl Default for Stage {
             surface: None,
             paint: Paint::default(),
             camera: Camera::default(),
+            board: Board::default(),
             window: Window { width: 1.0, height: 1.0, insets: [0.0; 4] },
             pixel_ratio: 1.0,
             time: -1.0,
@@ -68,6 +84,7 @@ impl Default for Stage {
             dark: false,
             boundaries: true,
             wires: false,
+            contours: true,
             plain: false,
             flow: 1.0,
             hovered: None,
@@ -76,7 +93,7 @@ impl Default for Stage {
             whole: [extent; 2],
             positions: Vec::new(),
             positions_at: None,
-            stale: Stale { surface: true, paint: true, picture: true },
+            stale: Stale::ALL,
         }
     }
 }
@@ -88,25 +105,62 @@ impl Stage {
         self.hovered = None;
         self.flow = 1.0;
         self.time = -1.0;
-        self.take(motion);
+        self.board.set(Vec::new());
+        self.take(motion, false);
     }
 
     /// Puts other poses in place of those there are: T·3·#V coordinates. The error is a sentence.
     pub fn set_poses(&mut self, positions: &[f32]) -> Result<(), &'static str> {
         let mut motion = std::mem::take(&mut self.motion);
         let result = motion.set_poses(positions);
-        self.take(motion);
+        self.take(motion, false);
         result
     }
 
-    fn take(&mut self, motion: Motion) {
-        self.normals = vec![None; motion.poses() + 1];
-        self.extents = vec![None; motion.poses() + 1];
-        self.whole = [motion.reference_extent(), motion.extent()];
+    /// Puts a skin in place of the poses: see [`super::skin::Skin::new`]. The error is a sentence.
+    pub fn set_skin(
+        &mut self,
+        handles: usize,
+        indices: &[u16],
+        weights: &[f32],
+        each: usize,
+        matrices: &[f32],
+    ) -> Result<(), &'static str> {
+        let mut motion = std::mem::take(&mut self.motion);
+        // With a skin, as without poses, the surface follows from the reference alone.
+        let same_surface = motion.skin().is_some() || motion.poses() == 0;
+        let result = motion.set_skin(handles, indices, weights, each, matrices);
+        self.take(motion, same_surface);
+        result
+    }
+
+    /// Puts other maps into the skin: see [`super::skin::Skin::set_maps`]. The error is a sentence.
+    pub fn set_maps(&mut self, matrices: &[f32]) -> Result<(), &'static str> {
+        self.motion.set_maps(matrices)?;
+        self.moves_otherwise();
+        Ok(())
+    }
+
+    /// Takes a motion; keeps the surface if it is known to be the same.
+    fn take(&mut self, motion: Motion, same_surface: bool) {
         self.motion = motion;
-        self.surface = None;
+        self.moves_otherwise();
+        self.stale.skin = true;
+        if !same_surface || self.surface.is_none() {
+            self.surface = None;
+            self.normals = vec![None; self.motion.poses() + 1];
+            self.stale = Stale::ALL;
+        }
+    }
+
+    /// Forgets all that followed from how the figure moved before.
+    fn moves_otherwise(&mut self) {
+        self.extents = vec![None; self.motion.poses() + 1];
+        self.whole = [self.motion.reference_extent(), self.motion.extent()];
         self.positions_at = None;
-        self.stale = Stale { surface: true, paint: true, picture: true };
+        self.board.moves_otherwise();
+        self.stale.maps = true;
+        self.redraw();
     }
 
     /// The motion.
@@ -119,10 +173,29 @@ impl Stage {
         self.surface.get_or_insert_with(|| Surface::new(&self.motion))
     }
 
+    /// Its surface and its skin, where one moves it.
+    pub fn skinned(&mut self) -> (&Surface, Option<&Skin>) {
+        (self.surface.get_or_insert_with(|| Surface::new(&self.motion)), self.motion.skin())
+    }
+
     /// Paints by parts: see [`Paint::parts`].
     pub fn paint_parts(&mut self, labels: &[u32], count: usize) -> Result<(), &'static str> {
         let surface = self.surface.get_or_insert_with(|| Surface::new(&self.motion));
         self.paint.parts(surface, labels, count)?;
+        self.repaint();
+        Ok(())
+    }
+
+    /// Paints by groups of vertices: see [`Paint::groups`].
+    pub fn paint_groups(&mut self, labels: &[u32], count: usize) -> Result<(), &'static str> {
+        self.paint.groups(&self.motion, labels, count)?;
+        self.repaint();
+        Ok(())
+    }
+
+    /// Paints a field on the vertices: see [`Paint::vertices`].
+    pub fn paint_vertices(&mut self, values: &[f32], low: f32, high: f32, map: ColourMap) -> Result<(), &'static str> {
+        self.paint.vertices(self.motion.vertices(), values, low, high, map)?;
         self.repaint();
         Ok(())
     }
@@ -153,7 +226,7 @@ impl Stage {
 
     /// What has changed since the last call.
     pub fn take_stale(&mut self) -> Stale {
-        std::mem::replace(&mut self.stale, Stale { surface: false, paint: false, picture: false })
+        std::mem::replace(&mut self.stale, Stale::NOTHING)
     }
 
     /// What has changed.
@@ -212,6 +285,11 @@ impl Stage {
         self.changed(|s| &mut s.wires, on);
     }
 
+    /// Sets whether fields on the vertices have lines of equal value.
+    pub fn set_contours(&mut self, on: bool) {
+        self.changed(|s| &mut s.contours, on);
+    }
+
     /// Sets whether the figure throws no shadow on itself, which is twice as fast.
     pub fn set_plain(&mut self, on: bool) {
         self.changed(|s| &mut s.plain, on);
@@ -245,8 +323,8 @@ impl Stage {
         (surface, positions, normals)
     }
 
-    /// Two words of paint for each face.
-    pub fn words(&mut self) -> Vec<[u32; 2]> {
+    /// Four words of paint for each face.
+    pub fn words(&mut self) -> Vec<[u32; 4]> {
         let surface = self.surface.get_or_insert_with(|| Surface::new(&self.motion));
         self.paint.words(surface, self.motion.faces())
     }
@@ -268,7 +346,7 @@ impl Stage {
     fn extent(&mut self, shape: usize) -> Extent {
         let motion = &self.motion;
         match self.extents.get_mut(shape) {
-            Some(kept) => *kept.get_or_insert_with(|| Extent::of(motion.shape(shape).iter())),
+            Some(kept) => *kept.get_or_insert_with(|| motion.shape_extent(shape)),
             None => self.whole[0],
         }
     }
@@ -277,25 +355,90 @@ impl Stage {
     pub fn frame_all(&mut self) {
         let reference = self.moment().to == 0;
         let centre = self.whole().centre();
-        self.camera.frame(&self.window, self.motion.sample(reference), centre);
+        self.camera.frame(&self.window, self.motion.sample(reference).into_iter(), centre);
         self.redraw();
     }
 
-    /// The point of the surface under a point of the window, CSS pixels.
-    pub fn pick(&mut self, x: f32, y: f32) -> Option<Hit> {
-        let moment = self.moment();
+    /// The camera as six numbers that do not depend on where the figure stands and how large it is: where the camera
+    /// looks, from the middle of the motion's ball, yaw and pitch, and how far it is; lengths in radii of that ball.
+    pub fn camera_numbers(&self) -> [f32; 6] {
+        self.camera.numbers_about(self.whole[1].ball())
+    }
+
+    /// Sets the camera from such numbers; whether they were a camera.
+    pub fn set_camera_numbers(&mut self, numbers: &[f32]) -> bool {
+        let camera = Camera::from_numbers_about(numbers, self.whole[1].ball());
+        if let Some(camera) = camera {
+            self.camera = camera;
+            self.redraw();
+        }
+        camera.is_some()
+    }
+
+    /// Positions of all vertices at a moment.
+    fn positions(&mut self, moment: Moment) {
         if self.positions_at != Some(moment) {
             self.motion.positions(moment, &mut self.positions);
             self.positions_at = Some(moment);
         }
+    }
+
+    /// The point of the surface under a point of the window, CSS pixels.
+    pub fn pick(&mut self, x: f32, y: f32) -> Option<Hit> {
+        self.positions(self.moment());
         pick(self.camera.ray(&self.window, x, y), self.motion.faces(), &self.positions)
+    }
+
+    /// Puts other pins in place of those there are.
+    pub fn set_pins(&mut self, pins: Vec<Pin>) {
+        self.board.set(pins);
+        self.redraw();
+    }
+
+    /// Where the pins' heads are at this moment, and whether the surface leaves them in sight as far as it was
+    /// looked up: see [`Stage::look`].
+    pub fn pin_spots(&mut self) -> impl Iterator<Item = (Option<Spot>, bool)> {
+        let moment = self.moment();
+        self.place_pins(moment, &self.motion.maps(moment));
+        self.board.spots()
+    }
+
+    /// The pin that is meant by a point of the window: see [`pins::pick`].
+    pub fn pick_pin(&mut self, x: f32, y: f32, reach: f32) -> Option<usize> {
+        let moment = self.moment();
+        self.place_pins(moment, &self.motion.maps(moment));
+        self.board.pick(x, y, reach)
+    }
+
+    fn place_pins(&mut self, moment: Moment, maps: &[Map]) {
+        let radius = self.radius();
+        self.board.place(&self.motion, moment, maps, &self.camera, &self.window, radius);
+    }
+
+    /// Places the pins for a frame and looks which of them the surface hides; for large meshes over several frames.
+    /// Whether there is more to do in a frame to come. `maps` are the skin's at this moment.
+    pub fn look(&mut self, maps: &[Map]) -> bool {
+        let moment = self.moment();
+        self.place_pins(moment, maps);
+        let more = self.board.look(&self.motion, moment, maps, &self.camera, &self.window);
+        self.board.fade() || more
+    }
+
+    /// Numbers of the pins for the shaders: see [`Board::floats`].
+    pub fn pin_floats(&self) -> Vec<[f32; pins::FLOATS]> {
+        self.board.floats(self.pixel_ratio)
+    }
+
+    /// Radius of the figure in its first pose.
+    fn radius(&mut self) -> f32 {
+        self.extent(if self.motion.poses() > 0 { 1 } else { 0 }).ball().radius
     }
 
     /// What the shaders need to know of this moment.
     pub fn frame(&mut self) -> Frame {
         let moment = self.moment();
         let now = self.extent(moment.from).towards(&self.extent(moment.to), moment.part);
-        let radius = self.extent(if self.motion.poses() > 0 { 1 } else { 0 }).ball().radius;
+        let radius = self.radius();
         let ball = now.ball();
         let (camera, ratio) = (self.camera, self.pixel_ratio);
         let [right, up, back] = camera.axes();
@@ -320,7 +463,14 @@ impl Stage {
             ground: Vec3::new(middle.x, floor, middle.z).extend(side),
             key: key.extend(if self.plain { 0.0 } else { 0.8 }),
             lines: glam::Vec4::new(0.62 * ratio, 0.18 * ratio, on(self.boundaries, 1.0), on(self.wires, 0.4)),
-            moment: glam::Vec4::new(moment.part, self.hovered.map_or(-1.0, |f| f as f32), label, 1.0 / 255.0),
+            // A skin makes one shape of this moment.
+            moment: glam::Vec4::new(
+                if self.motion.skin().is_some() { 0.0 } else { moment.part },
+                self.hovered.map_or(-1.0, |f| f as f32),
+                label,
+                1.0 / 255.0,
+            ),
+            field: glam::Vec4::new(on(self.contours, 0.32), 0.7 * ratio, 0.0, 0.0),
             flow: srgb_to_linear(CLAY).extend(self.flow),
             theme: Theme::new(self.dark),
         }
@@ -368,7 +518,7 @@ mod tests {
         stage.set_insets([0.0; 4]);
         assert!(!stage.stale().picture);
         stage.set_time(0.5);
-        assert_eq!(stage.take_stale(), Stale { surface: false, paint: false, picture: true });
+        assert_eq!(stage.take_stale(), Stale { picture: true, ..Stale::NOTHING });
         stage.paint_parts(&[0, 0, 1, 1], 2).unwrap();
         assert!(stage.stale().paint && stage.stale().picture);
     }

@@ -2,11 +2,11 @@
 //!
 //! Lengths are CSS pixels from the canvas's top left corner. What cannot be done is thrown as one sentence.
 
-use crate::view::camera::Camera;
 use crate::view::colormap::ColourMap;
 use crate::view::gpu::Renderer;
 use crate::view::gpu::device::{Backend, Gpu};
-use crate::view::motion::Motion;
+use crate::view::motion::{Moment, Motion};
+use crate::view::pins;
 use crate::view::stage::Stage;
 use js_sys::{Error, Float32Array, Function, Reflect, Uint8Array};
 use wasm_bindgen::prelude::*;
@@ -31,6 +31,8 @@ pub struct Viewport {
     stage: Stage,
     /// The shapes that the GPU has in its two places.
     places: [Option<usize>; 2],
+    /// The moment that the GPU's skinned shape is of.
+    skinned: Option<Moment>,
     /// Whether the camera was ever set.
     framed: bool,
     device_size: (u32, u32),
@@ -51,6 +53,7 @@ impl Viewport {
             renderer: Renderer::new(gpu),
             stage: Stage::default(),
             places: [None; 2],
+            skinned: None,
             framed: false,
             device_size: (0, 0),
         })
@@ -79,17 +82,22 @@ impl Viewport {
     }
 
     /// Tells the canvas's size on the page.
-    pub fn resize(&mut self, width: f32, height: f32, device_pixel_ratio: f32) {
+    ///
+    /// A canvas whose size in device pixels changes is cleared: whether it was, so that the caller draws before the
+    /// page is next shown.
+    pub fn resize(&mut self, width: f32, height: f32, device_pixel_ratio: f32) -> bool {
         self.stage.set_window(width, height, device_pixel_ratio);
         let ratio = self.stage.pixel_ratio();
         let pixels = |x: f32| (x * ratio).round().clamp(1.0, self.renderer.gpu().longest as f32) as u32;
         let size = (pixels(self.stage.window().width), pixels(self.stage.window().height));
-        if size != self.device_size {
+        let cleared = size != self.device_size;
+        if cleared {
             self.device_size = size;
             self.canvas.set_width(size.0);
             self.canvas.set_height(size.1);
             self.renderer.resize(size.0, size.1);
         }
+        cleared
     }
 
     /// Puts a mesh on the stage: 3·#F vertex numbers and 3·#V coordinates.
@@ -109,6 +117,35 @@ impl Viewport {
     pub fn set_poses(&mut self, positions: &[f32]) -> Result<(), JsValue> {
         self.places = [None; 2];
         self.stage.set_poses(positions).map_err(sentence)
+    }
+
+    /// Has a skin move the mesh instead of poses. Each vertex follows `each` (at most 16) of `handles` handles:
+    /// `indices` and `weights` are #V·`each` numbers, weights of a vertex add up to 1. `matrices` is T·`handles`·12
+    /// numbers, a 3×4 matrix row by row for each pose and handle. While it plays, a frame uploads only as many
+    /// matrices as there are handles.
+    pub fn set_skin(
+        &mut self,
+        handles: usize,
+        indices: &[u16],
+        weights: &[f32],
+        each: usize,
+        matrices: &[f32],
+    ) -> Result<(), JsValue> {
+        if !self.renderer.gpu().holds(self.stage.motion().faces().len().saturating_mul(3 * each.div_ceil(4))) {
+            return Err(sentence("This mesh has more vertices than this browser's graphics can move."));
+        }
+        self.places = [None; 2];
+        self.stage.set_skin(handles, indices, weights, each, matrices).map_err(sentence)
+    }
+
+    /// Moves the skin by other matrices: T·handles·12 numbers.
+    pub fn set_maps(&mut self, matrices: &[f32]) -> Result<(), JsValue> {
+        self.stage.set_maps(matrices).map_err(sentence)
+    }
+
+    /// Bytes that the last frame uploaded to move the vertices of a skin.
+    pub fn moved_bytes(&self) -> usize {
+        self.renderer.moved()
     }
 
     /// Sets the time in poses: 2.25 is a quarter of the way from pose 2 to pose 3, −1 the reference.
@@ -138,6 +175,26 @@ impl Viewport {
         self.stage.paint.scalar(values, low, high, map).map_err(sentence)?;
         self.stage.repaint();
         Ok(())
+    }
+
+    /// A field on the vertices: #V numbers, shown from `low` to `high`; what is not a number is clay.
+    pub fn paint_vertices(&mut self, values: &[f32], low: f32, high: f32, map: &str) -> Result<(), JsValue> {
+        self.stage.paint_vertices(values, low, high, colour_map_named(map)?).map_err(sentence)
+    }
+
+    /// Groups of vertices: #V numbers below `count`.
+    pub fn paint_groups(&mut self, labels: &[u32], count: usize) -> Result<(), JsValue> {
+        self.stage.paint_groups(labels, count).map_err(sentence)
+    }
+
+    /// Three sRGB bytes for each group that is painted.
+    pub fn group_colours(&self) -> Uint8Array {
+        Uint8Array::from(self.stage.paint.group_colours().as_flattened())
+    }
+
+    /// Sets whether fields on the vertices have lines at every tenth.
+    pub fn set_contours(&mut self, on: bool) {
+        self.stage.set_contours(on);
     }
 
     /// A set of faces: #F numbers, 0 outside.
@@ -191,6 +248,36 @@ impl Viewport {
         Some(Float32Array::from(&[hit.face as f32, a, b, c, p.x, p.y, p.z][..]))
     }
 
+    /// Puts pins on the surface in place of those there are, eight numbers each: see [`pins::read`].
+    pub fn set_pins(&mut self, numbers: &[f32]) -> Result<(), JsValue> {
+        self.stage.set_pins(pins::read(numbers).map_err(sentence)?);
+        Ok(())
+    }
+
+    /// Five numbers for each pin: x and y of its head's middle, its depth (not above 0 behind the camera), 1 if the
+    /// surface does not hide it, and the head's radius; all 0 for a pin that the mesh has no place for.
+    pub fn pin_positions(&mut self) -> Float32Array {
+        let numbers: Vec<f32> = self
+            .stage
+            .pin_spots()
+            .flat_map(|(spot, seen)| {
+                spot.map_or([0.0; 5], |s| [s.x, s.y, s.depth, f32::from(u8::from(seen)), s.radius])
+            })
+            .collect();
+        Float32Array::from(&numbers[..])
+    }
+
+    /// The pin under a point or within `reach` of it.
+    pub fn pick_pin(&mut self, x: f32, y: f32, reach: f32) -> Option<usize> {
+        self.stage.pick_pin(x, y, reach)
+    }
+
+    /// Three sRGB bytes for each of the first `count` pin colours.
+    pub fn pin_colours(&self, count: u32) -> Uint8Array {
+        let bytes: Vec<u8> = (0..count).flat_map(pins::colour).collect();
+        Uint8Array::from(&bytes[..])
+    }
+
     /// Three sRGB bytes for each part.
     pub fn part_colours(&self) -> Uint8Array {
         Uint8Array::from(self.stage.paint.part_colours().as_flattened())
@@ -227,15 +314,14 @@ impl Viewport {
         self.framed = true;
     }
 
-    /// The camera as six numbers.
+    /// The camera as six numbers that show any figure in the same way, whatever its size and place.
     pub fn camera(&self) -> Float32Array {
-        Float32Array::from(&self.stage.camera.numbers()[..])
+        Float32Array::from(&self.stage.camera_numbers()[..])
     }
 
     /// Sets the camera from the numbers of `camera()`; other numbers change nothing.
     pub fn set_camera(&mut self, numbers: &[f32]) {
-        if let Some(camera) = Camera::from_numbers(numbers) {
-            self.stage.camera = camera;
+        if self.stage.set_camera_numbers(numbers) {
             self.moved();
         }
     }
@@ -284,15 +370,43 @@ impl Viewport {
             self.places = [None; 2];
         }
         if stale.surface || stale.paint {
-            self.renderer.write_paint(&self.stage.words());
+            let words = self.stage.words();
+            self.renderer.write_paint(&words, self.stage.paint.table().as_deref());
         }
-        self.upload_shapes();
+        if stale.surface || stale.skin {
+            self.upload_skin();
+        }
+        let moment = self.stage.moment();
+        let maps = self.stage.motion().maps(moment);
+        if maps.is_empty() {
+            self.upload_shapes();
+        }
+        let again = self.stage.look(&maps);
+        self.renderer.write_pins(&self.stage.pin_floats());
         let frame = self.stage.frame();
-        let drawn = self.renderer.draw(&frame);
-        if !drawn {
+        let moves = stale.surface || stale.skin || stale.maps || self.skinned != Some(moment);
+        let drawn = self.renderer.draw(&frame, if moves { &maps } else { &[] });
+        self.skinned = if drawn { Some(moment) } else { None };
+        if again || !drawn {
             self.stage.redraw();
         }
         drawn
+    }
+
+    /// Gives the GPU what the vertices follow and the reference, where a skin moves them.
+    fn upload_skin(&mut self) {
+        self.skinned = None;
+        self.places = [None; 2];
+        let skinned = self.stage.motion().skin().is_some();
+        if skinned {
+            let (surface, positions, normals) = self.stage.shape(0);
+            self.renderer.write_shape(1, surface, positions, normals);
+            self.renderer.set_earlier(0);
+        }
+        let (surface, skin) = self.stage.skinned();
+        if let Err(problem) = self.renderer.set_skin(surface, skin) {
+            log(problem);
+        }
     }
 
     /// Sees to it that the GPU has the two shapes of the moment, and knows which is the earlier.

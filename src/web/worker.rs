@@ -5,58 +5,52 @@
 //! sequence that the page gives back after a restart ([`Engine::restore`]) yields the same bytes again.
 //! An error is one sentence for a person, thrown as a string.
 
+mod moving;
+mod pair;
+mod points;
+mod sequences;
+mod values;
+
 use crate::export::glb;
-use crate::import::{self, Clip, File, Options};
+use crate::import::{self, Options};
+use crate::keypoints;
 use crate::segmentation::{Parameters, Segmentation, Segmenter, Steps};
-use crate::sequence::{Pose, Sequence, Sizes};
+use crate::sequence::Sequence;
+use crate::transfer::propose::Proposer;
+use crate::transfer::{self, Prepared, Transfer};
 use crate::view::colour::srgb_to_linear;
-use crate::warning::Warning;
+use crate::weights::Biharmonic;
 use crate::zoo::{self, Recipe};
-use glam::DVec3;
-use js_sys::{Array, Float32Array, Float64Array, Function, Object, Reflect, Uint8Array, Uint32Array};
-use serde::de::DeserializeOwned;
-use serde::{Deserialize, Serialize};
-use std::fmt::Display;
+use js_sys::{Array, Function, Object, Uint8Array, Uint32Array};
+use sequences::{describe, kept_sequence, rounded};
+use serde::Serialize;
+use values::{Reply, parsed, plain, put, read_file, sentence, single, triples};
 use wasm_bindgen::prelude::*;
 
-/// What a message returns: an object, or a sentence.
-type Reply = Result<JsValue, JsValue>;
-
-/// The open sequence and what is done with it.
+/// The open sequences and what is done with them.
 #[wasm_bindgen]
 #[derive(Default)]
 pub struct Engine {
     sequence: Option<Sequence>,
     /// The merge tree of the last segmentation, with the parameters that it was made with.
     tree: Option<(Parameters, Segmenter)>,
+    target: Option<Sequence>,
+    /// What was prepared for the target, for the two together, and the last motion.
+    target_field: Option<Biharmonic>,
+    proposer: Option<Proposer>,
+    prepared: Option<(transfer::Parameters, Prepared)>,
+    moved: Option<Transfer>,
 }
 
 /// What [`Engine::about`] says.
 #[derive(Serialize)]
 struct About {
     parameters: Parameters,
+    keypoints: keypoints::Parameters,
+    transfer: transfer::Parameters,
     options: Options,
     recipe: Recipe,
     creatures: &'static [&'static str],
-}
-
-/// The small fields of a sequence; the big ones go beside them as typed arrays.
-#[derive(Serialize)]
-struct Opened<'a> {
-    name: &'a str,
-    pose_names: Vec<&'a str>,
-    sizes: Sizes,
-    diagonal: f64,
-    clips: &'a [Clip],
-    clip: Option<usize>,
-    warnings: &'a [Warning],
-}
-
-/// The small fields of a sequence that comes back from the page.
-#[derive(Deserialize)]
-struct Kept {
-    name: String,
-    pose_names: Vec<String>,
 }
 
 #[wasm_bindgen]
@@ -72,6 +66,8 @@ impl Engine {
     pub fn about() -> Reply {
         plain(&About {
             parameters: Parameters::default(),
+            keypoints: keypoints::Parameters::default(),
+            transfer: transfer::Parameters::default(),
             options: Options::default(),
             recipe: Recipe::default(),
             creatures: zoo::NAMES,
@@ -103,22 +99,7 @@ impl Engine {
 
     /// Takes back a sequence that another worker opened and the page kept.
     pub fn restore(&mut self, kept: JsValue) -> Result<(), JsValue> {
-        let faces: Vec<[u32; 3]> = triples(&Uint32Array::from(field(&kept, "faces")?).to_vec());
-        let reference = points(&Float32Array::from(field(&kept, "reference")?).to_vec());
-        let positions = points(&Float32Array::from(field(&kept, "poses")?).to_vec());
-        let times = Float64Array::from(field(&kept, "times")?).to_vec();
-        let polygons = field(&kept, "polygons")?;
-        let Kept { name, pose_names } = parsed(kept)?;
-        let poses = positions
-            .chunks(reference.len().max(1))
-            .zip(pose_names.into_iter().zip(times))
-            .map(|(positions, (name, time))| Pose { name, time, positions: positions.to_vec() })
-            .collect();
-        let mut sequence = Sequence::new(name, faces, reference, poses).map_err(sentence)?;
-        if !polygons.is_undefined() {
-            sequence = sequence.with_polygons(Uint32Array::from(polygons).to_vec()).map_err(sentence)?;
-        }
-        self.replace(sequence);
+        self.replace(kept_sequence(kept)?);
         Ok(())
     }
 
@@ -161,12 +142,7 @@ impl Engine {
     }
 
     fn grow(&self, parameters: &Parameters, progress: &Function) -> Result<Segmenter, JsValue> {
-        let mut observer = |stage: &'static str, done: f64| {
-            // A page that no longer listens is no reason to fail: it ends the worker when it wants no answer.
-            let _ = progress.call2(&JsValue::NULL, &stage.into(), &done.into());
-            true
-        };
-        Segmenter::new(self.open_sequence()?, parameters, &mut observer).map_err(sentence)
+        Segmenter::new(self.open_sequence()?, parameters, &mut watcher(progress)).map_err(sentence)
     }
 
     fn open_sequence(&self) -> Result<&Sequence, JsValue> {
@@ -176,50 +152,17 @@ impl Engine {
     fn replace(&mut self, sequence: Sequence) {
         self.sequence = Some(sequence);
         self.tree = None;
+        self.forget_pair();
     }
 }
 
-/// The same sequence with every coordinate rounded to the `f32` that the page receives.
-fn rounded(sequence: &Sequence) -> Result<Sequence, JsValue> {
-    let round = |positions: &[DVec3]| positions.iter().map(|p| p.as_vec3().as_dvec3()).collect::<Vec<_>>();
-    let poses = sequence
-        .poses()
-        .iter()
-        .map(|pose| Pose { name: pose.name.clone(), time: pose.time, positions: round(&pose.positions) })
-        .collect();
-    let result = Sequence::new(sequence.name(), sequence.faces().to_vec(), round(sequence.reference()), poses)
-        .map_err(sentence)?;
-    match sequence.polygons() {
-        Some(polygons) => result.with_polygons(polygons.to_vec()).map_err(sentence),
-        None => Ok(result),
+/// Hands progress on to the page.
+fn watcher(progress: &Function) -> impl FnMut(&'static str, f64) -> bool {
+    move |stage, done| {
+        // A page that no longer listens is no reason to fail: it ends the worker when it wants no answer.
+        let _ = progress.call2(&JsValue::NULL, &stage.into(), &done.into());
+        true
     }
-}
-
-fn describe(sequence: &Sequence, clips: &[Clip], clip: Option<usize>, warnings: &[Warning]) -> Reply {
-    let reply = plain(&Opened {
-        name: sequence.name(),
-        pose_names: sequence.poses().iter().map(|pose| pose.name.as_str()).collect(),
-        sizes: sequence.sizes(),
-        diagonal: sequence.diagonal(),
-        clips,
-        clip,
-        warnings,
-    })?;
-    let times: Vec<f64> = sequence.poses().iter().map(|pose| pose.time).collect();
-    put(&reply, "times", &Float64Array::from(times.as_slice()))?;
-    put(&reply, "faces", &Uint32Array::from(sequence.faces().as_flattened()))?;
-    put(&reply, "reference", &Float32Array::from(coordinates(sequence.reference()).as_slice()))?;
-    let vertices = sequence.reference().len() as u32;
-    let poses = Float32Array::new_with_length(3 * vertices * sequence.poses().len() as u32);
-    for (number, pose) in (0u32..).zip(sequence.poses()) {
-        let place = 3 * vertices * number;
-        poses.subarray(place, place + 3 * vertices).copy_from(&coordinates(&pose.positions));
-    }
-    put(&reply, "poses", &poses)?;
-    if let Some(polygons) = sequence.polygons() {
-        put(&reply, "polygons", &Uint32Array::from(polygons))?;
-    }
-    Ok(reply)
 }
 
 fn describe_parts(result: &Segmentation) -> Reply {
@@ -251,46 +194,4 @@ fn describe_steps(reply: &JsValue, steps: &Steps) -> Result<(), JsValue> {
     let rounds: Array = steps.rounds.iter().map(|round| Uint32Array::from(round.as_slice())).collect();
     put(reply, "rounds", &rounds)?;
     put(reply, "merges", &plain(&steps.merges)?)
-}
-
-fn read_file(file: &JsValue) -> Result<File, JsValue> {
-    let name = field(file, "name")?.as_string().ok_or_else(|| sentence("A file has no name."))?;
-    Ok(File { name, bytes: Uint8Array::from(field(file, "bytes")?).to_vec() })
-}
-
-fn coordinates(points: &[DVec3]) -> Vec<f32> {
-    points.iter().flat_map(|p| p.as_vec3().to_array()).collect()
-}
-
-fn points(coordinates: &[f32]) -> Vec<DVec3> {
-    triples(coordinates).into_iter().map(|[x, y, z]: [f32; 3]| DVec3::new(x.into(), y.into(), z.into())).collect()
-}
-
-fn triples<T: Copy>(flat: &[T]) -> Vec<[T; 3]> {
-    flat.as_chunks().0.to_vec()
-}
-
-fn single(values: &[f64]) -> Float32Array {
-    Float32Array::from(values.iter().map(|&value| value as f32).collect::<Vec<_>>().as_slice())
-}
-
-fn field(object: &JsValue, name: &str) -> Reply {
-    Reflect::get(object, &name.into())
-}
-
-fn put(object: &JsValue, name: &str, value: &JsValue) -> Result<(), JsValue> {
-    Reflect::set(object, &name.into(), value).map(|_| ())
-}
-
-fn plain<T: Serialize + ?Sized>(value: &T) -> Reply {
-    serde_wasm_bindgen::to_value(value).map_err(sentence)
-}
-
-fn parsed<T: DeserializeOwned>(value: JsValue) -> Result<T, JsValue> {
-    serde_wasm_bindgen::from_value(value).map_err(sentence)
-}
-
-/// An error as the page expects it.
-fn sentence(error: impl Display) -> JsValue {
-    JsValue::from_str(&error.to_string())
 }

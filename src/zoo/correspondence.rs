@@ -87,7 +87,7 @@ fn hits(creature: &Creature, rays: impl Iterator<Item = Ray>) -> Vec<Option<u32>
 }
 
 /// Where a ray crosses a triangle from within (Möller and Trumbore, 1997).
-fn crossed(from: DVec3, direction: DVec3, [a, b, c]: [DVec3; 3]) -> Option<f64> {
+pub(super) fn crossed(from: DVec3, direction: DVec3, [a, b, c]: [DVec3; 3]) -> Option<f64> {
     let (e1, e2) = (b - a, c - a);
     let p = direction.cross(e2);
     let determinant = e1.dot(p);

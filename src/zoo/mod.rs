@@ -1,7 +1,7 @@
 //! Creatures made by code, each with its true parts.
 //!
-//! A creature's own file ([`horse`], [`camel`], [`person`], [`snake`]) describes its bones, the limbs around them
-//! and how it moves. The rest is common: [`limb`]s are joined to a [`field`], the [`mesher`] makes a closed mesh of
+//! A creature's own file ([`horse`], [`camel`], [`person`], [`dinosaur`], [`snake`], [`hand`]) describes its bones, the
+//! limbs around them and how it moves. The rest is common: [`limb`]s are joined to a [`field`], the [`mesher`] makes a closed mesh of
 //! it, [`weights`] tie the mesh to the bones of the [`skeleton`], and [`gait`]s move them.
 //!
 //! Creatures stand on the ground y = 0, y is up, and they face +z; their left is +x. Lengths are about metres.
@@ -9,10 +9,13 @@
 pub mod body;
 pub mod camel;
 pub mod correspondence;
+pub mod dinosaur;
 pub mod extract;
 pub mod field;
 pub mod gait;
+pub mod hand;
 pub mod horse;
+pub mod landmarks;
 pub mod limb;
 pub mod mesher;
 pub mod person;
@@ -24,6 +27,7 @@ pub mod weights;
 
 use crate::sequence::{Pose, Sequence};
 pub use correspondence::correspondences;
+pub use landmarks::{landmark_pairs, landmarks};
 
 use body::Body;
 use glam::DVec3;
@@ -73,7 +77,7 @@ impl Default for Recipe {
 }
 
 /// The creatures there are.
-pub const NAMES: &[&str] = &["horse", "camel", "person", "person-arms-out", "snake"];
+pub const NAMES: &[&str] = &["horse", "camel", "person", "person-arms-out", "dinosaur", "snake", "hand"];
 
 /// What to call a creature in front of people.
 pub fn title(name: &str) -> &str {
@@ -82,7 +86,9 @@ pub fn title(name: &str) -> &str {
         "camel" => "Camel",
         "person" => "Person",
         "person-arms-out" => "Person, arms out",
+        "dinosaur" => "Dinosaur",
         "snake" => "Snake",
+        "hand" => "Hand",
         other => other,
     }
 }
@@ -96,7 +102,9 @@ pub fn make(recipe: &Recipe) -> Option<Creature> {
         "camel" => ("quadruped", camel::camel()),
         "person" => ("biped", person::person()),
         "person-arms-out" => ("biped", person::person_arms_out()),
+        "dinosaur" => ("dinosaur", dinosaur::dinosaur()),
         "snake" => ("snake", snake::snake()),
+        "hand" => ("hand", hand::hand()),
         _ => return None,
     };
     build(recipe, plan, &body)

@@ -199,7 +199,8 @@ fn motion_is_a_loop_on_the_ground() {
 
 #[test]
 fn gaits_return_to_their_start_and_planted_feet_stay_planted() {
-    for body in [horse::horse(), camel::camel(), person::person(), snake::snake()] {
+    let bodies = [horse::horse(), camel::camel(), person::person(), dinosaur::dinosaur(), snake::snake(), hand::hand()];
+    for body in bodies {
         let pose = |phase: f64| (body.motion.gait)(&body.skeleton, phase);
         for (a, b) in pose(0.0).iter().zip(&pose(1.0)) {
             assert!(a.shift.distance(b.shift) < 1e-9 && a.turn.angle_between(b.turn) < 1e-6);

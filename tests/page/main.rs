@@ -5,6 +5,8 @@
 mod harness;
 mod looking;
 mod opening;
+mod pairs;
 mod phone;
+mod players;
 mod source;
 mod watching;

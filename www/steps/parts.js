@@ -5,12 +5,14 @@ import { duration, number, percent, perMille, plural } from '../format.js';
 import { lesson } from '../lesson.js';
 import { costCurve, histogram } from '../plot.js';
 import { fitting, METHODS, reading, SLIDERS, SMOOTHINGS } from './parameters.js';
-import { MARK } from './views.js';
+import { MARK, VIEWS } from './views.js';
 import { warnings } from './warnings.js';
 
 export const partsStep = {
   id: 'parts',
   title: 'Parts',
+  views: VIEWS,
+  view: 'parts',
   summary: (app) => (app.result ? plural(app.result.parts.length, 'part') : ''),
   build,
 };

@@ -4,6 +4,7 @@ import { h, show } from '../dom.js';
 import { chosen } from '../files.js';
 import { count, duration, number, plural, title } from '../format.js';
 import { lesson } from '../lesson.js';
+import { gallery as pairGallery } from './gallery.js';
 import { warnings } from './warnings.js';
 
 export const sourceStep = {
@@ -17,7 +18,7 @@ export const sourceStep = {
   build,
 };
 
-const ACCEPT = '.glb,.gltf,.bin,.obj,.off,.ply,model/gltf-binary,model/gltf+json';
+export const ACCEPT = '.glb,.gltf,.bin,.obj,.off,.ply,model/gltf-binary,model/gltf+json';
 const DETAIL = [3_000, 12_000, 50_000, 200_000];
 const RATES = [6, 12, 24, 30, 60];
 const REFERENCES = [['bind', 'bind pose'], ['nodes', 'as placed in the file'], ['first-frame', 'first pose']];
@@ -47,6 +48,7 @@ function build(app) {
   update();
   return h('div', { class: 'step' }, h('h2', {}, 'Source'), current,
     h('h3', {}, 'Creatures'), gallery,
+    h('h3', {}, 'One moves like the other'), pairGallery(app),
     h('h3', {}, 'Your own'), fileButton(app),
     h('p', { class: 'small faint' }, 'Or drop it anywhere: a glTF or GLB with an animation, a folder, or numbered OBJ, OFF or PLY files. It never leaves this computer.'),
     fold('What a source is', { load: () => lesson('source') }));

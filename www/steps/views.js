@@ -143,3 +143,6 @@ export const VIEWS = [
     legend: () => ({ kind: 'parts' }),
   },
 ];
+
+/** The view that shows the parts themselves. */
+export const PARTS_VIEW = VIEWS.at(-1);

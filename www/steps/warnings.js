@@ -2,10 +2,13 @@
 import { h } from '../dom.js';
 import { MARK } from './views.js';
 
-/** @param {{code: string, message: string, faces?: number[]}[]} list */
-export function warnings(app, list = []) {
-  return list.map(({ message, faces }) => h('p', { class: 'warning' }, message, ' ',
+/**
+ * @param {{code: string, message: string, faces?: number[]}[]} list
+ * @param {import('../stage.js').Stage|null} figure the picture of the mesh concerned
+ */
+export function warnings(app, list = [], figure = app.stage) {
+  return list.map(({ message, faces }) => h('p', { class: 'warning' }, message.charAt(0).toUpperCase() + message.slice(1), ' ',
     faces?.length && h('button', { type: 'button', class: 'text-button', on: {
-      click: () => app.stage.mark(Uint32Array.from(faces), MARK.highlight),
+      click: () => figure?.mark(Uint32Array.from(faces), MARK.highlight),
     } }, 'Show them')));
 }

@@ -84,6 +84,36 @@ fn is_root() -> bool {
     shell::output(id).is_ok_and(|user| user == "0")
 }
 
+/// Other people's programs that exported files are tried with, as npm packages without dependencies of their own.
+const PLAYERS: [&str; 2] = ["three@0.187.0", "gltf-validator@2.0.0-dev.3.10"];
+
+/// The folder with [`PLAYERS`] in its `node_modules`, fetched if need be; else why there is none. They are for
+/// checking only: without Node.js or the network, all else goes on.
+pub fn players() -> Result<PathBuf> {
+    let folder = shell::target().join("players");
+    let there = |package: &str| {
+        let (name, version) = package.rsplit_once('@').unwrap_or((package, ""));
+        let about = std::fs::read_to_string(folder.join("node_modules").join(name).join("package.json"));
+        about.is_ok_and(|about| about.contains(&format!("\"version\": \"{version}\"")))
+    };
+    if on_path(&["node"]).is_none() {
+        bail!("Node.js is not installed");
+    }
+    if !PLAYERS.into_iter().all(there) {
+        if on_path(&["npm"]).is_none() {
+            bail!("npm is not installed");
+        }
+        std::fs::create_dir_all(&folder)?;
+        println!("fetching {}", PLAYERS.join(" and "));
+        let mut npm = shell::program("npm");
+        npm.arg("install").arg("--prefix").arg(&folder);
+        npm.args(["--ignore-scripts", "--no-audit", "--no-fund", "--no-save", "--loglevel", "error"]);
+        npm.args(["--fetch-retries", "1", "--fetch-timeout", "60000"]).args(PLAYERS);
+        shell::run(npm)?;
+    }
+    Ok(folder)
+}
+
 /// The version of a package in the text of a Cargo.lock.
 fn locked_version<'a>(lock: &'a str, package: &str) -> Option<&'a str> {
     let name = format!("name = \"{package}\"");

@@ -31,6 +31,9 @@ impl Tally {
 /// The seed of the property tests' cases.
 const SEED: &str = "PROPTEST_RNG_SEED";
 
+/// The page's tests that need other people's programs.
+const PLAYERS: &str = "players::";
+
 /// A step: what it is called, and what it does. A step with tests says how many; any other counts as one.
 type Step = (&'static str, fn() -> Result<Tally>);
 
@@ -163,6 +166,17 @@ fn test_page() -> Result<Tally> {
     let server = Server::bind(&bundle::folder(), "/some/where/", [0])?;
     let mut cargo = shell::cargo(["test", "--test", "page", "--", "--ignored", "--test-threads", "1", "--show-output"]);
     cargo.env("SINEW_PAGE", server.run_behind()?).env("CHROMIUM", setup::browser()?.chromium);
+    let players = setup::players();
+    match &players {
+        Ok(folder) => {
+            let address = Server::bind(folder, "/", [0])?.run_behind()?;
+            cargo.env("SINEW_PLAYERS", address).env("SINEW_PLAYERS_FOLDER", folder);
+        }
+        Err(why) => {
+            println!("left out: exported files in three.js and in the Khronos validator ({why:#})");
+            cargo.args(["--skip", PLAYERS]);
+        }
+    }
     let mut tally = count(cargo)?;
     // The native step left these out, and said so; they have now run.
     tally.ignored = 0;

@@ -4,7 +4,9 @@ mod input;
 mod inspect;
 mod keypoints;
 mod output;
+mod propose;
 mod segment;
+mod transfer;
 mod weights;
 mod zoo;
 
@@ -27,6 +29,10 @@ enum Command {
     Segment(segment::Segment),
     /// Choose the few points that govern a motion
     Keypoints(keypoints::KeyPointsCommand),
+    /// Find where points of one mesh lie on another
+    Propose(propose::Propose),
+    /// Make another mesh move like an animated one
+    Transfer(transfer::Transfer),
     /// Bounded biharmonic weights of given vertices
     Weights(weights::WeightsCommand),
     /// Make a creature
@@ -47,7 +53,9 @@ fn main() -> ExitCode {
         Command::Inspect(command) => command.run(),
         Command::Segment(command) => command.run(),
         Command::Keypoints(command) => command.run(),
+        Command::Transfer(command) => command.run(),
         Command::Weights(command) => command.run(),
+        Command::Propose(command) => command.run(),
         Command::Zoo(command) => command.run(),
     };
     match result {

@@ -1,9 +1,10 @@
 // The surface: three corners a face, fetched from textures, and everything that is drawn of it.
 
 @group(1) @binding(0) var faces: texture_2d<u32>;    // corners' drawn vertices
-@group(1) @binding(1) var paints: texture_2d<u32>;   // colour and mark; boundary bits and label
+@group(1) @binding(1) var paints: texture_2d<u32>;   // colour and mark; boundary bits and label; values of corners
 @group(1) @binding(2) var earlier: texture_2d<u32>;  // a drawn vertex's position (bits) and packed normal
 @group(1) @binding(3) var later: texture_2d<u32>;
+@group(1) @binding(4) var table: texture_2d<f32>;    // colours of what lies on the vertices
 
 fn texel(i: u32) -> vec2u {
     return vec2u(i & 2047u, i >> 11u);
@@ -98,8 +99,9 @@ struct Seen {
     @location(0) world: vec3f,
     @location(1) normal: vec3f,
     @location(2) weights: vec3f,
-    @location(3) @interpolate(flat) albedo: vec3f,
+    @location(3) @interpolate(flat) albedo: vec4f,  // w: how much of what lies on the vertices is seen on it
     @location(4) @interpolate(flat) bits: u32,
+    @location(5) @interpolate(flat) values: vec2u,  // of the corners; what they mean
 }
 
 // How much of the paint has arrived at a face while it flows in: it comes over a few faces at a time.
@@ -108,20 +110,27 @@ fn arrived(paint: vec2u) -> f32 {
     return clamp((stage.flow.w * (1.0 + FLOW_FRONT) - when) / FLOW_FRONT, 0.0, 1.0);
 }
 
-// Colour of a face: its paint, its mark, and what the pointer does to it.
-fn albedo_of(face: u32, paint: vec2u) -> vec3f {
+// Colour of a face: its paint, its mark, and what the pointer does to it; and how much of what lies on the vertices
+// is to be added.
+fn albedo_of(face: u32, paint: vec4u) -> vec4f {
     let low = vec4u(paint.x, paint.x >> 8u, paint.x >> 16u, paint.x >> 24u) & vec4u(255u);
-    var albedo = mix(stage.flow.rgb, decode(vec3f(low.xyz) / 255.0), arrived(paint));
+    var albedo = vec4f(mix(stage.flow.rgb, decode(vec3f(low.xyz) / 255.0), arrived(paint.xy)), 0.0);
+    if (paint.w >> 16u) > 0u {
+        let share = arrived(paint.xy);
+        albedo = vec4f(stage.flow.rgb * (1.0 - share), share);
+    }
     if low.w > 0u {
         let accent = stage.accents[min(low.w - 1u, 3u)];
-        albedo = mix(albedo, accent.rgb, accent.a);
+        albedo = mix(albedo, vec4f(accent.rgb, 0.0), accent.a);
     }
     let label = f32((paint.y >> 8u) & 65535u);
     if label > 0.0 && label == stage.moment.z {
-        albedo = mix(albedo, vec3f(1.0), 0.12);
+        albedo = mix(albedo, vec4f(1.0, 1.0, 1.0, 0.0), 0.12);
     }
     if f32(face) == stage.moment.y {
-        albedo = mix(albedo, stage.accents[4].rgb, stage.accents[4].a);
+        // What lies on the vertices is looked at from vertex to vertex: the face only glows a little.
+        let strength = select(1.0, 0.35, albedo.w > 0.0);
+        albedo = mix(albedo, vec4f(stage.accents[4].rgb, 0.0), stage.accents[4].a * strength);
     }
     return albedo;
 }
@@ -132,9 +141,10 @@ fn picture_vertex(@builtin(vertex_index) i: u32) -> Seen {
     let p = position_of(c);
     let which = i % 3u;
     let weights = vec3f(f32(which == 0u), f32(which == 1u), f32(which == 2u));
-    let paint = textureLoad(paints, texel(i / 3u), 0).xy;
-    let bits = select(0u, paint.y & 63u, arrived(paint) > 0.5);
-    return Seen(stage.view * vec4f(p, 1.0), p, normal_of(c), weights, albedo_of(i / 3u, paint), bits);
+    let paint = textureLoad(paints, texel(i / 3u), 0);
+    let bits = select(0u, paint.y & 63u, arrived(paint.xy) > 0.5);
+    let albedo = albedo_of(i / 3u, paint);
+    return Seen(stage.view * vec4f(p, 1.0), p, normal_of(c), weights, albedo, bits, paint.zw);
 }
 
 // How open the surface is to the sky, and the share of the key light that arrives: from the four nearest pixels of
@@ -164,13 +174,54 @@ fn from_corner(b: f32, c: f32, gb: vec2f, gc: vec2f) -> f32 {
     return length(vec2f(b * gc.y - c * gb.y, c * gb.x - b * gc.x)) / max(abs(d), 1e-12);
 }
 
+// What lies on the vertices: linear colour, and how dark a line is drawn here.
+fn on_vertices(values: vec2u, weights: vec3f, dx: vec3f, dy: vec3f) -> vec4f {
+    let v = vec3u(values.x & 65535u, values.x >> 16u, values.y & 65535u);
+    if (values.y >> 16u) == 2u {
+        // The group of the nearest corner; a line where two corners of different groups are as near.
+        let ab = weights.x - weights.y;
+        let bc = weights.y - weights.z;
+        let ca = weights.z - weights.x;
+        let nearest = select(select(v.z, v.y, bc >= 0.0), v.x, ab >= 0.0 && ca <= 0.0);
+        let px = vec3f(length(vec2f(dx.x - dx.y, dy.x - dy.y)), length(vec2f(dx.y - dx.z, dy.y - dy.z)), length(vec2f(dx.z - dx.x, dy.z - dy.x)));
+        let far = abs(vec3f(ab, bc, ca)) / max(px, vec3f(1e-12));
+        var line = 1e9;
+        line = select(line, min(line, far.x), v.x != v.y && min(weights.x, weights.y) >= weights.z);
+        line = select(line, min(line, far.y), v.y != v.z && min(weights.y, weights.z) >= weights.x);
+        line = select(line, min(line, far.z), v.z != v.x && min(weights.z, weights.x) >= weights.y);
+        let dark = clamp(stage.lines.x + 0.5 - line, 0.0, 1.0) * stage.lines.z * stage.line_colour.a;
+        return vec4f(decode(textureLoad(table, vec2u(nearest, 0u), 0).rgb), dark);
+    }
+    if any(v == vec3u(65535u)) {
+        return vec4f(stage.flow.rgb, 0.0);
+    }
+    let corners = vec3f(v) / 65534.0;
+    let value = clamp(dot(corners, weights), 0.0, 1.0);
+    let place = value * 255.0;
+    let low = min(u32(place), 254u);
+    let colour = mix(textureLoad(table, vec2u(low, 0u), 0).rgb, textureLoad(table, vec2u(low + 1u, 0u), 0).rgb, place - f32(low));
+    // A line at every tenth; where they would crowd, they fade, and so they do at both ends, which are plateaus.
+    let steep = max(length(vec2f(dot(corners, dx), dot(corners, dy))) * 10.0, 1e-9);
+    let step = value * 10.0;
+    let off = abs(fract(step + 0.5) - 0.5) / steep;
+    let ends = smoothstep(0.4, 0.6, step) * smoothstep(0.4, 0.6, 10.0 - step);
+    let dark = clamp(stage.field.y + 0.5 - off, 0.0, 1.0) * stage.field.x * ends * smoothstep(0.25, 0.1, steep);
+    return vec4f(decode(colour), dark);
+}
+
 @fragment
 fn picture_fragment(in: Seen) -> @location(0) vec4f {
     let dx = dpdx(in.weights);
     let dy = dpdy(in.weights);
     let pixel = in.position.xy;
 
-    let albedo = in.albedo;
+    var albedo = in.albedo.rgb;
+    var drawn = 0.0;
+    if in.albedo.a > 0.0 {
+        let paint = on_vertices(in.values, in.weights, dx, dy);
+        albedo += in.albedo.a * paint.rgb;
+        drawn = in.albedo.a * paint.a;
+    }
 
     // Lines: distance to the three edges and corners in pixels.
     let grad = vec3f(length(vec2f(dx.x, dy.x)), length(vec2f(dx.y, dy.y)), length(vec2f(dx.z, dy.z)));
@@ -233,6 +284,7 @@ fn picture_fragment(in: Seen) -> @location(0) vec4f {
     var colour = albedo * (key * mix(vec3f(1.0), tinted, 0.45) + (sky + bounce) * tinted + rim);
 
     colour = mix(colour, albedo * 0.25, wire);
+    colour = mix(colour, stage.line_colour.rgb, drawn);
     colour = mix(colour, stage.line_colour.rgb, boundary * stage.line_colour.a);
     return vec4f(encode(colour) + (noise(pixel) - 0.5) * stage.moment.w, 1.0);
 }

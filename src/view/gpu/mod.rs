@@ -1,19 +1,26 @@
 //! The GPU's side of drawing, for WebGPU and WebGL 2 alike.
 //!
-//! A frame is drawn in six small passes. The surface is drawn as the key light sees it (a shadow map), from under
+//! A frame is drawn in six small passes, after one that moves the vertices where a skin does. The surface is drawn as the key light sees it (a shadow map), from under
 //! the ground (which gives, blurred, the soft shadow that it stands on), and as depth and normals at half the
-//! resolution (which give the shade in hollows and, with the shadow map, the light that arrives). Then comes the picture itself. All that lies between passes is
+//! resolution (which give the shade in hollows and, with the shadow map, the light that arrives). Then comes the picture itself,
+//! with the pins on it. All that lies between passes is
 //! eight bits a channel, which every device can draw to.
 
 pub mod device;
+pub mod pins;
 pub mod pipelines;
+pub mod skin;
 pub mod textures;
 
 use crate::view::frame::{FLOATS, Frame};
+use crate::view::pins as view_pins;
+use crate::view::skin::{Map, Skin};
 use crate::view::surface::Surface;
 use device::Gpu;
 use glam::Vec3;
+use pins::PinsOnDevice;
 use pipelines::{DATA, DEPTH, Pipelines, SAMPLES};
+use skin::SkinOnDevice;
 use textures::MeshTextures;
 use wgpu::{
     AddressMode, BindGroup, BindGroupDescriptor, BindGroupEntry, BindGroupLayout, BindingResource, Buffer,
@@ -38,6 +45,9 @@ pub struct Renderer {
     fixed: FixedTargets,
     sized: Option<SizedTargets>,
     mesh: Option<Mesh>,
+    pins: PinsOnDevice,
+    /// Bytes that moved the vertices of the last frame.
+    moved: usize,
 }
 
 /// The surface on the device.
@@ -48,6 +58,9 @@ struct Mesh {
     faces: u32,
     /// Which of the two is the earlier.
     earlier: usize,
+    /// The first shape as a target, the second as a source.
+    views: [TextureView; 2],
+    skin: Option<SkinOnDevice>,
 }
 
 /// What does not depend on the size of the picture.
@@ -93,7 +106,8 @@ impl Renderer {
         };
         let samplers = [sampler(Some(CompareFunction::LessEqual)), sampler(None)];
         let fixed = FixedTargets::new(&gpu, &pipelines.layouts.source);
-        Self { gpu, pipelines, uniform, frame_group, samplers, fixed, sized: None, mesh: None }
+        let pins = PinsOnDevice::new(&gpu);
+        Self { gpu, pipelines, uniform, frame_group, samplers, fixed, sized: None, mesh: None, pins, moved: 0 }
     }
 
     /// The device.
@@ -110,13 +124,14 @@ impl Renderer {
     pub fn set_surface(&mut self, surface: &Surface) -> Result<(), &'static str> {
         let textures = MeshTextures::new(&self.gpu, surface)?;
         let view = |t: &wgpu::Texture| t.create_view(&Default::default());
-        let (faces, paints) = (view(&textures.faces), view(&textures.paints));
+        let (faces, paints, table) = (view(&textures.faces), view(&textures.paints), view(&textures.table));
         let shapes = [view(&textures.shapes[0]), view(&textures.shapes[1])];
         let groups = [[0, 1], [1, 0]].map(|[a, b]: [usize; 2]| {
-            let views = [&faces, &paints, &shapes[a], &shapes[b]].map(BindingResource::TextureView);
+            let views = [&faces, &paints, &shapes[a], &shapes[b], &table].map(BindingResource::TextureView);
             group(&self.gpu, &self.pipelines.layouts.mesh, &views)
         });
-        self.mesh = Some(Mesh { textures, groups, faces: surface.corners.len() as u32, earlier: 0 });
+        let faces = surface.corners.len() as u32;
+        self.mesh = Some(Mesh { textures, groups, faces, earlier: 0, views: shapes, skin: None });
         Ok(())
     }
 
@@ -134,15 +149,33 @@ impl Renderer {
         }
     }
 
-    /// Uploads the paint.
-    pub fn write_paint(&self, words: &[[u32; 2]]) {
+    /// Uploads the paint: see [`crate::view::paint::Paint::words`] and [`crate::view::paint::Paint::table`].
+    pub fn write_paint(&self, words: &[[u32; 4]], table: Option<&[[u8; 4]]>) {
         if let Some(mesh) = &self.mesh {
-            mesh.textures.write_paint(&self.gpu, words);
+            mesh.textures.write_paint(&self.gpu, words, table);
         }
     }
 
-    /// Draws a frame; whether it was drawn.
-    pub fn draw(&mut self, frame: &Frame) -> bool {
+    /// Has a skin move the shape in the second place into the first, or nothing. The error is a sentence.
+    pub fn set_skin(&mut self, surface: &Surface, skin: Option<&Skin>) -> Result<(), &'static str> {
+        let Some(mesh) = &mut self.mesh else { return Ok(()) };
+        let make = |skin| SkinOnDevice::new(&self.gpu, &self.pipelines.layouts.skin, surface, skin, &mesh.views[1]);
+        mesh.skin = skin.map(make).transpose()?;
+        Ok(())
+    }
+
+    /// Uploads the pins, farthest first.
+    pub fn write_pins(&mut self, pins: &[[f32; view_pins::FLOATS]]) {
+        self.pins.write(&self.gpu, pins);
+    }
+
+    /// Bytes that were uploaded to move the vertices of the last frame.
+    pub fn moved(&self) -> usize {
+        self.moved
+    }
+
+    /// Draws a frame; whether it was drawn. `maps` move the skin, or leave it where it is if there are none.
+    pub fn draw(&mut self, frame: &Frame, maps: &[Map]) -> bool {
         let Some(picture) = self.gpu.picture() else { return false };
         let Some(mesh) = &self.mesh else { return false };
         let size = (picture.texture.width(), picture.texture.height());
@@ -154,6 +187,12 @@ impl Renderer {
         let mut encoder = self.gpu.device.create_command_encoder(&Default::default());
         let e = &mut encoder;
         let (p, fixed) = (&self.pipelines, &self.fixed);
+        self.moved = match &mesh.skin {
+            Some(skin) if !maps.is_empty() => {
+                skin.move_vertices(&self.gpu, &p.skin, &self.frame_group, e, maps, &mesh.views[0])
+            }
+            _ => 0,
+        };
         let surface = |pass: &mut RenderPass, pipeline: &RenderPipeline| {
             pass.set_pipeline(pipeline);
             pass.set_bind_group(0, &self.frame_group, &[]);
@@ -197,6 +236,7 @@ impl Renderer {
             pass.set_pipeline(&p.studio);
             pass.draw(0..3, 0..1);
             surface(&mut pass, &p.picture);
+            self.pins.draw(&mut pass, p);
         }
         self.gpu.queue.submit([encoder.finish()]);
         self.gpu.submitted();

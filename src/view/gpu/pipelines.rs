@@ -1,17 +1,21 @@
 //! The shaders made ready, pass by pass.
 
 use super::device::Gpu;
+use crate::view::pins::FLOATS;
 use wgpu::{
-    BindGroupLayout, BindGroupLayoutDescriptor, BindGroupLayoutEntry, BindingType, BufferBindingType, ColorTargetState,
-    ColorWrites, CompareFunction, DepthStencilState, FragmentState, MultisampleState, PipelineLayoutDescriptor,
-    RenderPipeline, RenderPipelineDescriptor, SamplerBindingType, ShaderModule, ShaderModuleDescriptor, ShaderSource,
-    ShaderStages, TextureFormat, TextureSampleType, TextureViewDimension, VertexState,
+    BindGroupLayout, BindGroupLayoutDescriptor, BindGroupLayoutEntry, BindingType, BlendState, BufferBindingType,
+    ColorTargetState, ColorWrites, CompareFunction, DepthStencilState, FragmentState, MultisampleState,
+    PipelineLayoutDescriptor, PrimitiveState, PrimitiveTopology, RenderPipeline, RenderPipelineDescriptor,
+    SamplerBindingType, ShaderModule, ShaderModuleDescriptor, ShaderSource, ShaderStages, TextureFormat,
+    TextureSampleType, TextureViewDimension, VertexBufferLayout, VertexState, VertexStepMode, vertex_attr_array,
 };
 
 /// Format of depth textures.
 pub const DEPTH: TextureFormat = TextureFormat::Depth32Float;
 /// Format of everything that is computed on the way: every device can draw to it.
 pub const DATA: TextureFormat = TextureFormat::Rgba8Unorm;
+/// Format of shapes: bits of a position and a packed normal.
+pub const SHAPE: TextureFormat = TextureFormat::Rgba32Uint;
 /// Samples a pixel in the picture.
 pub const SAMPLES: u32 = 4;
 
@@ -25,6 +29,8 @@ pub struct Layouts {
     pub shade: BindGroupLayout,
     /// Group 1 of the filters: the picture they read.
     pub source: BindGroupLayout,
+    /// Group 1 where a skin moves the vertices.
+    pub skin: BindGroupLayout,
 }
 
 /// Every pass.
@@ -45,6 +51,10 @@ pub struct Pipelines {
     pub spread: [RenderPipeline; 2],
     /// Shade in hollows, and its blur.
     pub hollow: [RenderPipeline; 2],
+    /// Vertices moved by a skin.
+    pub skin: RenderPipeline,
+    /// Pins that shine through the surface, and pins.
+    pub pins: [RenderPipeline; 2],
 }
 
 /// What one pass is made of.
@@ -55,6 +65,8 @@ struct Pass<'a> {
     fragment: Option<(&'a str, TextureFormat)>,
     depth: Option<CompareFunction>,
     samples: u32,
+    /// Whether quads are drawn, an instance each, that mix with what is below.
+    quads: bool,
 }
 
 impl Pipelines {
@@ -69,23 +81,48 @@ impl Pipelines {
         };
         let mesh = module(include_str!("mesh.wgsl"));
         let filters = module(include_str!("filters.wgsl"));
+        let skin = module(include_str!("skin.wgsl"));
+        let pins = module(include_str!("pins.wgsl"));
         let (frame, surface, shade, source) =
             (Some(&layouts.frame), Some(&layouts.mesh), Some(&layouts.shade), Some(&layouts.source));
         let drawn = |vertex, fragment| {
             let (module, groups, depth) = (&mesh, &[frame, surface][..], Some(CompareFunction::Less));
-            pipeline(gpu, &Pass { module, groups, vertex, fragment, depth, samples: 1 })
+            pipeline(gpu, &Pass { module, groups, vertex, fragment, depth, samples: 1, quads: false })
         };
         let seen = |vertex, fragment, depth| {
             let (module, groups) = (&mesh, &[frame, surface, shade][..]);
             let fragment = Some((fragment, gpu.format));
-            pipeline(gpu, &Pass { module, groups, vertex, fragment, depth: Some(depth), samples: SAMPLES })
+            pipeline(
+                gpu,
+                &Pass { module, groups, vertex, fragment, depth: Some(depth), samples: SAMPLES, quads: false },
+            )
         };
         let filter = |fragment, groups: &[_]| {
             let module = &filters;
             let fragment = Some((fragment, DATA));
-            pipeline(gpu, &Pass { module, groups, vertex: "screen", fragment, depth: None, samples: 1 })
+            pipeline(gpu, &Pass { module, groups, vertex: "screen", fragment, depth: None, samples: 1, quads: false })
+        };
+        let skinned = Pass {
+            module: &skin,
+            groups: &[frame, Some(&layouts.skin)],
+            vertex: "everywhere",
+            fragment: Some(("skinned", SHAPE)),
+            depth: None,
+            samples: 1,
+            quads: false,
+        };
+        let pin = |fragment| {
+            let (module, groups, fragment) = (&pins, &[frame][..], Some((fragment, gpu.format)));
+            // Whether the surface hides them is known already.
+            let depth = Some(CompareFunction::Always);
+            pipeline(
+                gpu,
+                &Pass { module, groups, vertex: "pin_vertex", fragment, depth, samples: SAMPLES, quads: true },
+            )
         };
         Self {
+            skin: pipeline(gpu, &skinned),
+            pins: [pin("ghost_fragment"), pin("pin_fragment")],
             shadow: drawn("shadow_vertex", None),
             ground: drawn("ground_vertex", Some(("ground_fragment", DATA))),
             depth: drawn("depth_vertex", Some(("depth_fragment", DATA))),
@@ -121,7 +158,7 @@ impl Layouts {
         let exact = texture(TextureSampleType::Float { filterable: false });
         Self {
             frame: layout(&[(ShaderStages::VERTEX_FRAGMENT, uniform)]),
-            mesh: layout(&[words; 4]),
+            mesh: layout(&[words, words, words, words, in_fragment(exact)]),
             shade: layout(&[
                 in_fragment(texture(TextureSampleType::Depth)),
                 in_fragment(BindingType::Sampler(SamplerBindingType::Comparison)),
@@ -130,6 +167,11 @@ impl Layouts {
                 in_fragment(exact),
             ]),
             source: layout(&[in_fragment(exact)]),
+            skin: layout(&[
+                in_fragment(texture(TextureSampleType::Uint)),
+                in_fragment(texture(TextureSampleType::Uint)),
+                in_fragment(exact),
+            ]),
         }
     }
 }
@@ -140,8 +182,15 @@ fn pipeline(gpu: &Gpu, pass: &Pass) -> RenderPipeline {
         bind_group_layouts: pass.groups,
         immediate_size: 0,
     });
+    let blend = pass.quads.then_some(BlendState::PREMULTIPLIED_ALPHA_BLENDING);
     let targets =
-        pass.fragment.map(|(_, format)| [Some(ColorTargetState { format, blend: None, write_mask: ColorWrites::ALL })]);
+        pass.fragment.map(|(_, format)| [Some(ColorTargetState { format, blend, write_mask: ColorWrites::ALL })]);
+    let topology = if pass.quads { PrimitiveTopology::TriangleStrip } else { PrimitiveTopology::TriangleList };
+    let instances = Some(VertexBufferLayout {
+        array_stride: 4 * FLOATS as u64,
+        step_mode: VertexStepMode::Instance,
+        attributes: &vertex_attr_array![0 => Float32x4, 1 => Float32x4, 2 => Float32x4],
+    });
     gpu.device.create_render_pipeline(&RenderPipelineDescriptor {
         label: Some(pass.fragment.map_or(pass.vertex, |f| f.0)),
         layout: Some(&layout),
@@ -149,9 +198,9 @@ fn pipeline(gpu: &Gpu, pass: &Pass) -> RenderPipeline {
             module: pass.module,
             entry_point: Some(pass.vertex),
             compilation_options: Default::default(),
-            buffers: &[],
+            buffers: if pass.quads { std::slice::from_ref(&instances) } else { &[] },
         },
-        primitive: Default::default(),
+        primitive: PrimitiveState { topology, ..Default::default() },
         depth_stencil: pass.depth.map(|compare| DepthStencilState {
             format: DEPTH,
             depth_write_enabled: Some(compare == CompareFunction::Less),

@@ -12,6 +12,7 @@ struct Stage {
     lines: vec4f,           // boundary half width, device pixels; wire half width; boundary strength; wire strength
     moment: vec4f,          // share of the later shape; hovered face or -1; hovered label or 0; dither strength
     flow: vec4f,            // linear colour where paint that flows in has not arrived; w: how far it is, 1 for done
+    field: vec4f,           // strength of lines of equal value; their half width, device pixels
     key_light: vec4f,       // linear light; w: strength of the rim
     sky_light: vec4f,
     ground_light: vec4f,

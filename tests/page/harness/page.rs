@@ -43,6 +43,11 @@ impl Page {
         let address = std::env::var("SINEW_PAGE").expect(
             "SINEW_PAGE is not set: these tests need the built page on a server; `cargo xtask test` does all that",
         );
+        Self::open_at(address, backend, screen, tail)
+    }
+
+    /// Opens another page: `tail` after the given address.
+    pub fn open_at(address: String, backend: Backend, screen: Screen, tail: &str) -> Self {
         let mut browsers = backend.browser();
         let browser = browsers.get(backend);
         let target = text(&browser.call("Target.createTarget", json!({ "url": "about:blank" }), None)["targetId"]);
@@ -206,7 +211,12 @@ impl Page {
 
     /// Presses the mouse in the middle of an element, moves it by some CSS pixels and lets it go.
     pub fn drag(&mut self, selector: &str, by: (f64, f64)) {
-        let (x, y) = self.middle_of(selector);
+        let from = self.middle_of(selector);
+        self.drag_from(from, by);
+    }
+
+    /// The same from a point of the page.
+    pub fn drag_from(&mut self, (x, y): (f64, f64), by: (f64, f64)) {
         self.mouse("mouseMoved", x, y, 0);
         self.mouse("mousePressed", x, y, 1);
         for step in 1..=8 {
@@ -251,6 +261,15 @@ impl Page {
         self.call("Input.dispatchKeyEvent", down);
         let up = json!({ "type": "keyUp", "key": key, "code": name, "windowsVirtualKeyCode": code });
         self.call("Input.dispatchKeyEvent", up);
+    }
+
+    /// Presses and lets go of a letter while Control is held.
+    pub fn press_with_control(&mut self, key: &str) {
+        let code = key.bytes().next().map_or(0, |byte| u32::from(byte.to_ascii_uppercase()));
+        for kind in ["rawKeyDown", "keyUp"] {
+            let event = json!({ "type": kind, "key": key, "modifiers": 2, "windowsVirtualKeyCode": code });
+            self.call("Input.dispatchKeyEvent", event);
+        }
     }
 
     /// What the page looks like, also written to `target/screenshots/NAME-BACKEND-SCREEN.png`.

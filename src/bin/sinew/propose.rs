@@ -1,0 +1,96 @@
+//! `sinew propose`: where key points of one mesh lie on another.
+
+use crate::Refusal;
+use crate::input::{Input, print_warnings};
+use crate::output::{self, say};
+use clap::Args;
+use serde::Deserialize;
+use serde_json::json;
+use sinew::clock;
+use sinew::import::{File, Options, open_in_order};
+use sinew::transfer::propose::Proposer;
+use std::path::{Path, PathBuf};
+
+/// Arguments of `sinew propose`.
+#[derive(Args)]
+pub struct Propose {
+    #[command(flatten)]
+    input: Input,
+    /// The mesh on which the points are to be found
+    #[arg(long, value_name = "MESH")]
+    target: PathBuf,
+    /// JSON with the source's vertex numbers: a list, or an object with `key_points` (a report of key points)
+    #[arg(long, value_name = "FILE.json")]
+    points: PathBuf,
+    /// JSON with the pairs that are known: [{"source": VERTEX, "target": VERTEX}, …]
+    #[arg(long, value_name = "FILE.json")]
+    pairs: Option<PathBuf>,
+    /// Write the proposals as JSON
+    #[arg(long, value_name = "FILE.json")]
+    report: Option<PathBuf>,
+}
+
+/// The two forms of a file of points.
+#[derive(Deserialize)]
+#[serde(untagged)]
+enum Points {
+    Plain(Vec<u32>),
+    Report { key_points: Vec<u32> },
+}
+
+#[derive(Deserialize)]
+struct Pair {
+    source: u32,
+    target: u32,
+}
+
+impl Propose {
+    /// Reads both meshes, proposes, and prints or writes the proposals.
+    pub fn run(&self) -> Result<(), Refusal> {
+        let source = self.input.open()?;
+        let name = self.target.display().to_string();
+        let target = open_in_order(&[File { name, bytes: read(&self.target)? }], &Options::default())?;
+        let points = match parse(&self.points)? {
+            Points::Plain(points) | Points::Report { key_points: points } => points,
+        };
+        let pairs: Vec<Pair> = self.pairs.as_deref().map(parse).transpose()?.unwrap_or_default();
+        let known: Vec<Option<u32>> =
+            points.iter().map(|&p| pairs.iter().find(|pair| pair.source == p).map(|pair| pair.target)).collect();
+        let (from, to) = (&source.sequence, &target.sequence);
+        let start = clock::seconds();
+        let proposer = Proposer::new(from.faces(), from.reference(), to.faces(), to.reference())?;
+        let prepared = clock::seconds();
+        let proposals = proposer.propose(&points, &known)?;
+        let done = clock::seconds();
+        for (point, proposal) in points.iter().zip(&proposals.points) {
+            say(format_args!("{point:>8} → {:<8} confidence {:.2}", proposal.target, proposal.confidence));
+        }
+        if let Some(next) = proposals.next.and_then(|next| points.get(next)) {
+            say(format_args!("most worth placing by hand: {next}"));
+        }
+        print_warnings(&source.warnings);
+        print_warnings(&target.warnings);
+        let Some(path) = &self.report else { return Ok(()) };
+        let list: Vec<_> = points
+            .iter()
+            .zip(&proposals.points)
+            .map(|(source, p)| json!({ "source": source, "target": p.target, "confidence": p.confidence }))
+            .collect();
+        let report = json!({
+            "pairs": list,
+            "next": proposals.next,
+            "seconds": { "prepare": prepared - start, "propose": done - prepared },
+            "warnings": source.warnings.iter().chain(&target.warnings).collect::<Vec<_>>(),
+        });
+        output::write_report(path, &report)
+    }
+}
+
+fn read(path: &Path) -> Result<Vec<u8>, Refusal> {
+    std::fs::read(path).map_err(|error| Refusal(format!("{} cannot be read: {error}", path.display())))
+}
+
+fn parse<T: serde::de::DeserializeOwned>(path: &Path) -> Result<T, Refusal> {
+    serde_json::from_slice(&read(path)?)
+        .map_err(|error| Refusal(format!("{} is not what was expected: {error}", path.display())))
+}

@@ -1,0 +1,331 @@
+//! `sinew transfer`: a second mesh moves like the first.
+
+use crate::Refusal;
+use crate::input::{Input, print_warnings};
+use crate::output::{self, counted, say};
+use clap::{Args, ValueEnum};
+use glam::DVec3;
+use serde_json::{Map, Value, json};
+use sinew::clock;
+use sinew::import::{File, Imported, Options, natural_order, open_in_order};
+use sinew::mesh::ball::unit_ball;
+use sinew::observer::Silent;
+use sinew::sequence::{Pose, Sequence};
+use sinew::transfer::{Method, Pair, Parameters, Transfer as Result_, transfer};
+use std::fmt::Write as _;
+use std::path::{Path, PathBuf};
+
+/// Bounds on the distance of a vertex from the truth, in radii, for the share of vertices within them.
+const BOUNDS: [f64; 10] = [0.0025, 0.005, 0.0075, 0.01, 0.015, 0.02, 0.03, 0.05, 0.075, 0.1];
+
+/// Arguments of `sinew transfer`.
+#[derive(Args)]
+pub struct Transfer {
+    #[command(flatten)]
+    input: Input,
+    /// The mesh that is to move: its reference pose
+    #[arg(long, value_name = "MESH")]
+    target: PathBuf,
+    /// Corresponding vertices: [{"source": 12, "target": 34}, …]
+    #[arg(long, value_name = "FILE.json")]
+    pairs: PathBuf,
+    /// The family of methods
+    #[arg(long, value_enum, default_value_t = MethodArgument::Biharmonic)]
+    method: MethodArgument,
+    /// Which of the family
+    #[arg(long, value_enum, default_value_t = Variant::Default)]
+    variant: Variant,
+    /// The most bones that are sought in the source
+    #[arg(long, value_parser = clap::value_parser!(u32).range(1..=256))]
+    bones: Option<u32>,
+    /// Write the moving target
+    #[arg(long, value_name = "FILE.glb")]
+    out: Option<PathBuf>,
+    /// Write one OBJ a pose, with the target's own vertices and polygons
+    #[arg(long, value_name = "DIR")]
+    out_poses: Option<PathBuf>,
+    /// Write parameters, seconds, errors and warnings as JSON
+    #[arg(long, value_name = "FILE.json")]
+    report: Option<PathBuf>,
+    /// The target's true poses, to measure the result against: files, or a folder of files in natural order
+    #[arg(long, value_name = "FILE", num_args = 1..)]
+    truth: Vec<PathBuf>,
+}
+
+#[derive(Clone, Copy, PartialEq, ValueEnum)]
+enum MethodArgument {
+    /// By biharmonic weights
+    Biharmonic,
+}
+
+#[derive(Clone, Copy, PartialEq, ValueEnum)]
+enum Variant {
+    /// Near-rigid bones, joint on joint
+    Default,
+    /// The affine motion of each key point, as it is
+    Direct,
+    /// The affine motion of each key point about itself
+    Relative,
+}
+
+impl Transfer {
+    /// Reads, transfers, and writes what was asked for.
+    pub fn run(&self) -> Result<(), Refusal> {
+        let start = clock::seconds();
+        let source = self.input.open()?;
+        let target = mesh(std::slice::from_ref(&self.target))?;
+        let pairs = pairs(&self.pairs)?;
+        let reading = clock::seconds() - start;
+        let parameters = self.parameters();
+        let result = transfer(&source.sequence, &target.sequence, &pairs, &parameters, &mut Silent)?;
+        let begun = clock::seconds();
+        let positions = result.poses(target.sequence.reference());
+        let blending = clock::seconds() - begun;
+        let moved = moved(&source.sequence, &target.sequence, positions)?;
+        let errors = if self.truth.is_empty() { None } else { Some(measure(&target.sequence, &moved, &self.truth)?) };
+        if let Some(folder) = &self.out_poses {
+            write_poses(folder, &moved)?;
+        }
+        if let Some(path) = &self.out {
+            output::write_glb(path, &moved, &vec![0; moved.faces().len()], &[])?;
+        }
+        if let Some(path) = &self.report {
+            let report = report(&source, &target, &pairs, &parameters, &result, errors.as_ref(), [reading, blending]);
+            output::write_report(path, &report)?;
+        }
+        print(&source, &target, &pairs, &result, errors.as_ref());
+        Ok(())
+    }
+
+    fn parameters(&self) -> Parameters {
+        let default = Parameters::default();
+        // There is one family so far.
+        let MethodArgument::Biharmonic = self.method;
+        Parameters {
+            method: match self.variant {
+                Variant::Default => default.method,
+                Variant::Direct => Method::Direct,
+                Variant::Relative => Method::Relative,
+            },
+            bones: self.bones.map_or(default.bones, |bones| bones as usize),
+        }
+    }
+}
+
+/// Reads files as one sequence, without welding: vertices keep their numbers.
+fn mesh(paths: &[PathBuf]) -> Result<Imported, Refusal> {
+    let read = |path: &PathBuf| {
+        let name = path.display().to_string();
+        match std::fs::read(path) {
+            Ok(bytes) => Ok(File { name, bytes }),
+            Err(error) => Err(Refusal(format!("{name} cannot be read: {error}"))),
+        }
+    };
+    let files = paths.iter().map(read).collect::<Result<Vec<_>, _>>()?;
+    Ok(open_in_order(&files, &Options { weld: false, ..Options::default() })?)
+}
+
+fn pairs(path: &Path) -> Result<Vec<Pair>, Refusal> {
+    let name = path.display();
+    let text = std::fs::read_to_string(path).map_err(|error| Refusal(format!("{name} cannot be read: {error}")))?;
+    serde_json::from_str(&text).map_err(|error| {
+        Refusal(format!("{name} is no list of pairs such as [{{\"source\": 12, \"target\": 34}}]: {error}"))
+    })
+}
+
+/// The target with the poses of the source.
+fn moved(source: &Sequence, target: &Sequence, positions: Vec<Vec<DVec3>>) -> Result<Sequence, Refusal> {
+    let poses = source
+        .poses()
+        .iter()
+        .zip(positions)
+        .map(|(pose, positions)| Pose { name: pose.name.clone(), time: pose.time, positions })
+        .collect();
+    let moved = Sequence::new(target.name(), target.faces().to_vec(), target.reference().to_vec(), poses)?;
+    Ok(match target.polygons() {
+        Some(polygons) => moved.with_polygons(polygons.to_vec())?,
+        None => moved,
+    })
+}
+
+/// How far the result is from the truth, in radii of the target's unit ball.
+struct Errors {
+    mean: f64,
+    of_poses: Vec<f64>,
+    /// The share of vertices and poses within each of [`BOUNDS`].
+    within: Vec<f64>,
+}
+
+/// The truth's files: those of a folder in natural order, without its reference pose.
+fn truth_files(paths: &[PathBuf]) -> Result<Vec<PathBuf>, Refusal> {
+    let [folder] = paths else { return Ok(paths.to_vec()) };
+    if !folder.is_dir() {
+        return Ok(paths.to_vec());
+    }
+    let cannot = |error| Refusal(format!("{} cannot be read: {error}", folder.display()));
+    let entries = std::fs::read_dir(folder).map_err(cannot)?;
+    let mut files = Vec::new();
+    for entry in entries {
+        let path = entry.map_err(cannot)?.path();
+        let rest = path.file_stem().is_some_and(|stem| stem == "rest" || stem == "reference");
+        if path.is_file() && !rest {
+            files.push(File { name: path.display().to_string(), bytes: Vec::new() });
+        }
+    }
+    natural_order(&mut files);
+    Ok(files.into_iter().map(|file| PathBuf::from(file.name)).collect())
+}
+
+fn measure(target: &Sequence, moved: &Sequence, paths: &[PathBuf]) -> Result<Errors, Refusal> {
+    let files = truth_files(paths)?;
+    let (_, radius) = unit_ball(target.faces(), target.reference());
+    if files.len() != moved.poses().len() {
+        let [truth, poses] = [counted(files.len(), "true pose"), counted(moved.poses().len(), "pose")];
+        return Err(Refusal(format!("there are {truth} for {poses}; one file a pose is needed")));
+    }
+    let mut errors = Errors { mean: 0.0, of_poses: Vec::new(), within: vec![0.0; BOUNDS.len()] };
+    for (path, pose) in files.iter().zip(moved.poses()) {
+        let truth = mesh(std::slice::from_ref(path))?.sequence;
+        if truth.reference().len() != pose.positions.len() {
+            let [found, expected] = [truth.reference().len(), pose.positions.len()];
+            return Err(Refusal(format!("{} has {found} vertices, the target has {expected}", path.display())));
+        }
+        let distances = distances(&pose.positions, truth.reference(), radius);
+        let count = distances.len().max(1) as f64;
+        errors.of_poses.push(distances.iter().sum::<f64>() / count);
+        for (within, bound) in errors.within.iter_mut().zip(BOUNDS) {
+            *within += distances.iter().filter(|d| **d <= bound).count() as f64 / count / files.len() as f64;
+        }
+    }
+    errors.mean = errors.of_poses.iter().sum::<f64>() / errors.of_poses.len().max(1) as f64;
+    Ok(errors)
+}
+
+/// Distances of vertices from the truth in radii, the mean difference removed.
+fn distances(found: &[DVec3], truth: &[DVec3], radius: f64) -> Vec<f64> {
+    let off: Vec<DVec3> = found.iter().zip(truth).map(|(a, b)| (*a - *b) / radius).collect();
+    let mean = off.iter().sum::<DVec3>() / off.len().max(1) as f64;
+    off.into_iter().map(|d| (d - mean).length()).collect()
+}
+
+/// One OBJ a pose. Where faces were cut from polygons, the polygons are put together again.
+fn write_poses(folder: &Path, moved: &Sequence) -> Result<(), Refusal> {
+    std::fs::create_dir_all(folder)
+        .map_err(|error| Refusal(format!("{} cannot be made: {error}", folder.display())))?;
+    let faces = polygons(moved);
+    let digits = moved.poses().len().to_string().len().max(3);
+    for (number, pose) in moved.poses().iter().enumerate() {
+        let mut text = String::new();
+        for p in &pose.positions {
+            // Writing to a string cannot fail.
+            let _ = writeln!(text, "v {} {} {}", p.x, p.y, p.z);
+        }
+        for face in &faces {
+            text.push('f');
+            for v in face {
+                let _ = write!(text, " {}", v + 1);
+            }
+            text.push('\n');
+        }
+        output::write(&folder.join(format!("pose_{number:0digits$}.obj")), text)?;
+    }
+    Ok(())
+}
+
+/// The input's polygons: fans of triangles with one number, joined again.
+fn polygons(sequence: &Sequence) -> Vec<Vec<u32>> {
+    let Some(numbers) = sequence.polygons() else {
+        return sequence.faces().iter().map(|face| face.to_vec()).collect();
+    };
+    let mut polygons: Vec<(u32, Vec<u32>)> = Vec::new();
+    for (&face, &number) in sequence.faces().iter().zip(numbers) {
+        let joined = polygons.last_mut().is_some_and(|(last, corners)| *last == number && insert(corners, face));
+        if !joined {
+            polygons.push((number, face.to_vec()));
+        }
+    }
+    polygons.into_iter().map(|polygon| polygon.1).collect()
+}
+
+/// Adds a triangle to a polygon along the edge that they share; `false` if they share none.
+fn insert(corners: &mut Vec<u32>, face: [u32; 3]) -> bool {
+    let n = corners.len();
+    for i in 0..n {
+        let (a, b) = (corners[i], corners[(i + 1) % n]);
+        for k in 0..3 {
+            if face[k] == b && face[(k + 1) % 3] == a && !corners.contains(&face[(k + 2) % 3]) {
+                corners.insert(i + 1, face[(k + 2) % 3]);
+                return true;
+            }
+        }
+    }
+    false
+}
+
+fn report(
+    source: &Imported,
+    target: &Imported,
+    pairs: &[Pair],
+    parameters: &Parameters,
+    result: &Result_,
+    errors: Option<&Errors>,
+    [reading, blending]: [f64; 2],
+) -> Value {
+    let mut seconds = Map::new();
+    seconds.insert("import".into(), json!(reading));
+    for (step, time) in &result.seconds {
+        seconds.insert((*step).into(), json!(time));
+    }
+    seconds.insert("blending".into(), json!(blending));
+    let total = reading + blending + result.seconds.iter().map(|(_, time)| time).sum::<f64>();
+    seconds.insert("total".into(), json!(total));
+    let warnings: Vec<_> = source.warnings.iter().chain(&target.warnings).chain(&result.warnings).collect();
+    let truth = errors.map(|errors| {
+        json!({
+            "mean": errors.mean,
+            "of_poses": errors.of_poses,
+            "bounds": BOUNDS,
+            "within": errors.within,
+        })
+    });
+    json!({
+        "source": source.sequence.name(),
+        "target": target.sequence.name(),
+        "parameters": parameters,
+        "pairs": pairs,
+        "source_vertices": source.sequence.sizes().vertices,
+        "vertices": target.sequence.sizes().vertices,
+        "faces": target.sequence.sizes().faces,
+        "poses": source.sequence.sizes().poses,
+        "handles": result.skin.handles,
+        "most_influences": result.skin.most_influences(),
+        "bones": result.bones,
+        "source_error": result.source_error,
+        "size": result.alignment.size,
+        "turn": result.alignment.turn.to_cols_array_2d(),
+        "seconds": seconds,
+        "error": truth,
+        "warnings": warnings,
+    })
+}
+
+fn print(source: &Imported, target: &Imported, pairs: &[Pair], result: &Result_, errors: Option<&Errors>) {
+    let seconds: f64 = result.seconds.iter().map(|(_, time)| time).sum();
+    say(format_args!(
+        "{} moves like {}: {} by {}, {}, {seconds:.2} s",
+        target.sequence.name(),
+        source.sequence.name(),
+        counted(source.sequence.sizes().poses, "pose"),
+        counted(pairs.len(), "pair"),
+        counted(result.skin.handles.len(), "handle"),
+    ));
+    if let Some(errors) = errors {
+        say(format_args!("  mean distance from the truth {:.4} of the radius; share of vertices within", errors.mean));
+        for (bound, within) in BOUNDS.iter().zip(&errors.within) {
+            say(format_args!("  {bound:<7} {:>5.1} %", 100.0 * within));
+        }
+    }
+    print_warnings(&source.warnings);
+    print_warnings(&target.warnings);
+    print_warnings(&result.warnings);
+}

@@ -1,0 +1,37 @@
+//! When the poses of an animation are shown.
+
+use glam::DVec3;
+
+/// Seconds between poses whose own times cannot be used.
+pub const STEP: f32 = 1.0 / 12.0;
+
+/// The times of the poses from 0 on, if they rise; else evenly spaced ones.
+pub fn from_zero(times: impl Iterator<Item = f64> + Clone) -> Vec<f32> {
+    let first = times.clone().next().unwrap_or(0.0);
+    let times: Vec<f32> = times.map(|time| (time - first) as f32).collect();
+    let rise = times.windows(2).all(|pair| pair[0] < pair[1]) && times.iter().all(|t| t.is_finite());
+    if rise { times } else { (0..times.len()).map(|i| i as f32 * STEP).collect() }
+}
+
+/// Whether the step from the last of the poses to the first is one like the others (and not none), so that the
+/// motion is a loop. `step(a, b)` is how far apart poses `a` and `b` are.
+pub fn closes(poses: usize, step: impl Fn(usize, usize) -> f64) -> bool {
+    if poses < 3 {
+        return false;
+    }
+    let longest = (1..poses).map(|pose| step(pose - 1, pose)).fold(0.0, f64::max);
+    let back = step(poses - 1, 0);
+    back > 1e-6 * longest && back <= 1.5 * longest
+}
+
+/// How far apart two poses are: the sum over their points.
+pub fn step(a: &[DVec3], b: &[DVec3]) -> f64 {
+    a.iter().zip(b).map(|(a, b)| a.distance(*b)).sum()
+}
+
+/// Adds the time of one more key, which shows the first pose again.
+pub fn close(times: &mut Vec<f32>) {
+    if let [first, .., last] = times[..] {
+        times.push(last + (last - first) / (times.len() - 1) as f32);
+    }
+}

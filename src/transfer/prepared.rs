@@ -1,0 +1,352 @@
+//! The transfer between one source and one target, ready for any pairs.
+
+use super::alignment::{Alignment, align};
+use super::biharmonic::{Fit, carried};
+use super::joints::Joints;
+use super::registration::{Foot, Ground, Pin, Registration, feet};
+use super::rig::Rig;
+use super::rig::weights::{averaged, normalised};
+use super::spline::Spline;
+use super::surface::Surface;
+use super::{Method, Pair, Parameters, Skin, Transfer, TransferError};
+use crate::clock;
+use crate::observer::Observer;
+use crate::sequence::Sequence;
+use crate::warning::Warning;
+use crate::weights::{self, Biharmonic, Weights};
+use glam::{DAffine3, DVec3};
+use std::collections::BTreeMap;
+
+/// Rounds in which weights on a target of [`SMOOTHED`] vertices are averaged with their neighbours', and the most rounds on
+/// finer ones.
+const SMOOTHING: usize = 5;
+const SMOOTHED: usize = 3000;
+const MOST_SMOOTHING: usize = 24;
+/// How far the shape that the bent target keeps is that which the pairs suggest, not its own.
+const BELIEF: f64 = 0.5;
+/// Bones that a vertex of the target may follow.
+const INFLUENCES: usize = 8;
+/// Above this mean distance of the skinned source from the true one, in radii, a person is told.
+const ROUGH: f64 = 0.02;
+
+/// What does not change while pairs are placed: the source's bones and the factored systems of the target.
+pub struct Prepared {
+    parameters: Parameters,
+    source: Surface,
+    target: Surface,
+    poses: Vec<Vec<DVec3>>,
+    rig: Rig,
+    ground: Ground,
+    registration: Registration,
+    /// Of the source and of the target, for the methods that blend by the weights of the key points.
+    weights: Option<[Biharmonic; 2]>,
+    /// The bent target of the result before, from which the next starts while a point is dragged.
+    last: Option<Vec<DVec3>>,
+    warnings: Vec<Warning>,
+    seconds: Vec<(&'static str, f64)>,
+}
+
+/// Seconds by step, and the observer asked at each.
+struct Steps<'a> {
+    observer: &'a mut dyn Observer,
+    seconds: Vec<(&'static str, f64)>,
+    started: f64,
+}
+
+impl<'a> Steps<'a> {
+    fn new(observer: &'a mut dyn Observer) -> Self {
+        Self { observer, seconds: Vec::new(), started: clock::seconds() }
+    }
+
+    /// Ends a step that brought the whole to `done`.
+    fn end(&mut self, step: &'static str, done: f64) -> Result<(), TransferError> {
+        let now = clock::seconds();
+        self.seconds.push((step, now - self.started));
+        self.started = now;
+        if self.observer.progress(step, done) { Ok(()) } else { Err(TransferError::Cancelled) }
+    }
+}
+
+impl Prepared {
+    /// Prepares a source, all of it, and the reference pose of a target.
+    pub fn new(
+        source: &Sequence,
+        target: &Sequence,
+        parameters: &Parameters,
+        observer: &mut dyn Observer,
+    ) -> Result<Self, TransferError> {
+        let mut steps = Steps::new(observer);
+        let surfaces = [(source, "source"), (target, "target")].map(|(sequence, side)| {
+            let surface = Surface::new(sequence);
+            if surface.faces.is_empty() { Err(TransferError::NoFaces { side }) } else { Ok(surface) }
+        });
+        let [here, there] = surfaces;
+        let (here, there) = (here?, there?);
+        let poses: Vec<Vec<DVec3>> = source.poses().iter().map(|pose| here.unit(&pose.positions)).collect();
+        steps.end("surfaces", 0.1)?;
+        let registration = Registration::new(&there).map_err(|_| TransferError::Degenerate { side: "target" })?;
+        steps.end("systems", 0.3)?;
+        let rig = match parameters.method {
+            Method::Bones => Rig::new(&here, &poses, parameters.bones.max(1)),
+            Method::Direct | Method::Relative => Rig::default(),
+        };
+        steps.end("bones", 0.9)?;
+        let weights = match parameters.method {
+            Method::Bones => None,
+            Method::Direct | Method::Relative => Some([
+                Biharmonic::new(source.faces(), source.reference())?,
+                Biharmonic::new(target.faces(), target.reference())?,
+            ]),
+        };
+        let ground = Ground::new(&here);
+        steps.end("search", 1.0)?;
+        let mut warnings = Vec::new();
+        if rig.error > ROUGH {
+            warnings.push(Warning::new(
+                "not-rigid",
+                format!(
+                    "the source bends everywhere: {} bones follow it to {:.1} % of its radius only, and the target follows \
+                     no better",
+                    rig.bones,
+                    100.0 * rig.error
+                ),
+            ));
+        }
+        Ok(Self {
+            parameters: parameters.clone(),
+            source: here,
+            target: there,
+            poses,
+            rig,
+            ground,
+            registration,
+            weights,
+            last: None,
+            warnings,
+            seconds: steps.seconds,
+        })
+    }
+
+    /// Seconds of the steps of the preparation.
+    pub fn seconds(&self) -> &[(&'static str, f64)] {
+        &self.seconds
+    }
+
+    /// Transfers all poses by the given pairs.
+    pub fn transfer(&mut self, pairs: &[Pair], observer: &mut dyn Observer) -> Result<Transfer, TransferError> {
+        self.run(pairs, false, observer)
+    }
+
+    /// As [`Prepared::transfer`], but starting from the result before: for pairs that are being dragged. What a fresh start
+    /// would give may differ a little.
+    pub fn follow(&mut self, pairs: &[Pair], observer: &mut dyn Observer) -> Result<Transfer, TransferError> {
+        self.run(pairs, true, observer)
+    }
+
+    fn run(&mut self, pairs: &[Pair], quick: bool, observer: &mut dyn Observer) -> Result<Transfer, TransferError> {
+        let mut steps = Steps::new(observer);
+        let mut warnings = self.warnings.clone();
+        let pairs = self.checked(pairs, &mut warnings)?;
+        let points: Vec<(DVec3, DVec3)> = pairs.iter().map(|pair| self.points(pair)).collect();
+        let alignment = align(&points);
+        let skin = match self.parameters.method {
+            Method::Bones => {
+                let last = self.last.take().filter(|_| quick);
+                let bent = self.bend(&pairs, &points, alignment, last);
+                steps.end("correspondence", 0.8)?;
+                let skin = self.by_bones(alignment, &bent);
+                self.last = Some(bent);
+                skin
+            }
+            method => {
+                let weights = self.weights_of(&pairs)?;
+                steps.end("weights", 0.8)?;
+                self.by_key_points(method, &pairs, &points, alignment, weights)
+            }
+        };
+        steps.end("maps", 1.0)?;
+        Ok(Transfer {
+            skin,
+            alignment,
+            bones: self.rig.bones,
+            source_error: self.rig.error,
+            warnings,
+            seconds: steps.seconds,
+        })
+    }
+
+    /// The pairs without repetitions.
+    fn checked(&self, pairs: &[Pair], warnings: &mut Vec<Warning>) -> Result<Vec<Pair>, TransferError> {
+        if pairs.is_empty() {
+            return Err(TransferError::NoPairs);
+        }
+        let mut kept: Vec<Pair> = Vec::with_capacity(pairs.len());
+        let mut seen = [BTreeMap::new(), BTreeMap::new()];
+        for (number, pair) in pairs.iter().enumerate() {
+            let place = |side: &'static str, surface: &Surface, vertex: u32| match surface.place.get(vertex as usize) {
+                Some(&place) => Ok(place),
+                None => Err(TransferError::OutOfRange { pair: number, side, vertex, vertices: surface.place.len() }),
+            };
+            let places = [place("source", &self.source, pair.source)?, place("target", &self.target, pair.target)?];
+            let before = [0, 1].map(|side| seen[side].get(&places[side]).copied());
+            match before {
+                [None, None] => {
+                    seen[0].insert(places[0], number);
+                    seen[1].insert(places[1], number);
+                    kept.push(*pair);
+                }
+                [Some(first), Some(same)] if first == same => {
+                    warnings.push(Warning::new(
+                        "repeated-pair",
+                        format!("pair {number} repeats pair {first} and was left out"),
+                    ));
+                }
+                [Some(first), _] => {
+                    return Err(TransferError::SamePlace { first, second: number, side: "source" });
+                }
+                [None, Some(first)] => {
+                    return Err(TransferError::SamePlace { first, second: number, side: "target" });
+                }
+            }
+        }
+        if kept.len() < 4 {
+            warnings.push(Warning::new(
+                "few-pairs",
+                format!("with {} only, much is guessed; about a dozen tell where everything is", count(kept.len())),
+            ));
+        }
+        Ok(kept)
+    }
+
+    fn points(&self, pair: &Pair) -> (DVec3, DVec3) {
+        let at = |surface: &Surface, vertex: u32| surface.positions[surface.place[vertex as usize] as usize];
+        (at(&self.source, pair.source), at(&self.target, pair.target))
+    }
+
+    /// The target bent onto the source; `last` is the result before, if the next is to start from it.
+    fn bend(
+        &self,
+        pairs: &[Pair],
+        points: &[(DVec3, DVec3)],
+        alignment: Alignment,
+        last: Option<Vec<DVec3>>,
+    ) -> Vec<DVec3> {
+        let target = &self.target;
+        let rest: Vec<DVec3> = target.positions.iter().map(|&p| alignment.invert(p)).collect();
+        let pins: Vec<Pin> = pairs
+            .iter()
+            .zip(points)
+            .map(|(pair, point)| Pin { vertex: target.place[pair.target as usize], point: point.0 })
+            .collect();
+        // The shape that the bent target keeps as far as it can lies between its own and the one with its points where they
+        // belong: proportions differ, and so do poses.
+        let placed = splined(&rest, &rest, &pins);
+        let shape: Vec<DVec3> = rest.iter().zip(&placed).map(|(r, p)| r.lerp(*p, BELIEF)).collect();
+        let quick = last.is_some();
+        let start = last.map_or(placed, |last| splined(&rest, &last, &pins));
+        self.registration.bend((&self.source, &self.ground), target, &shape, start, &pins, quick)
+    }
+
+    fn by_bones(&self, alignment: Alignment, bent: &[DVec3]) -> Skin {
+        let feet = feet(&self.source, &self.ground, &self.target, bent);
+        let mut rows: Vec<Vec<(u32, f64)>> = feet.iter().map(|foot| self.pulled(*foot)).collect();
+        let rounds = (SMOOTHING * self.target.len()).div_ceil(SMOOTHED).clamp(2, MOST_SMOOTHING);
+        for _ in 0..rounds {
+            rows = averaged(&self.target, &rows, INFLUENCES);
+        }
+        let joints = Joints::new(&self.source, &self.rig, &self.target, &rows, alignment);
+        let maps = self.rig.maps.iter().map(|maps| self.outward(&joints.carry(maps))).collect();
+        self.skin(self.rig.bones, &rows, maps)
+    }
+
+    /// The weights of the source at a place on it.
+    fn pulled(&self, foot: Option<Foot>) -> Vec<(u32, f64)> {
+        let Some(foot) = foot else { return vec![(0, 1.0)] };
+        let mut row: Vec<(u32, f64)> = Vec::new();
+        for (&v, share) in self.source.faces[foot.face as usize].iter().zip(foot.shares) {
+            for &(bone, weight) in self.rig.rows.get(v as usize).into_iter().flatten() {
+                match row.iter_mut().find(|entry| entry.0 == bone) {
+                    Some(entry) => entry.1 += share * weight,
+                    None => row.push((bone, share * weight)),
+                }
+            }
+        }
+        normalised(row)
+    }
+
+    /// The weights of the key points on the source and on the target.
+    fn weights_of(&self, pairs: &[Pair]) -> Result<[Weights; 2], TransferError> {
+        let Some([here, there]) = &self.weights else { return Err(TransferError::NoPairs) };
+        let [sources, targets] = [|pair: &Pair| pair.source, |pair: &Pair| pair.target]
+            .map(|side| pairs.iter().map(side).collect::<Vec<u32>>());
+        let parameters = weights::Parameters::default();
+        Ok([here.weights(&sources, &parameters)?, there.weights(&targets, &parameters)?])
+    }
+
+    fn by_key_points(
+        &self,
+        method: Method,
+        pairs: &[Pair],
+        points: &[(DVec3, DVec3)],
+        alignment: Alignment,
+        [here, weights]: [Weights; 2],
+    ) -> Skin {
+        let rows: Vec<f64> = self.source.vertex.iter().flat_map(|&v| here.row(v as usize).iter().copied()).collect();
+        let fit = Fit::new(&self.source, &rows, pairs.len());
+        let of_pose = |pose: &Vec<DVec3>| {
+            let maps = fit.maps(&self.source, pose);
+            let there: Vec<DAffine3> =
+                maps.iter().zip(points).map(|(map, &pair)| carried(method, alignment, pair, map)).collect();
+            self.outward(&there)
+        };
+        let maps = self.poses.iter().map(of_pose).collect();
+        let row = |&v: &u32| {
+            let shares = weights.row(v as usize).iter().zip(0_u32..).map(|(&w, h)| (h, w));
+            let mut row: Vec<(u32, f64)> = shares.filter(|entry| entry.1 > 0.0).collect();
+            row.sort_by(|a, b| b.1.total_cmp(&a.1).then(a.0.cmp(&b.0)));
+            normalised(row)
+        };
+        let rows: Vec<Vec<(u32, f64)>> = self.target.vertex.iter().map(row).collect();
+        let mut skin = self.skin(pairs.len(), &rows, maps);
+        skin.handles = pairs.iter().map(|pair| pair.target).collect();
+        skin
+    }
+
+    /// Maps in the target's unit ball as maps in its own units.
+    fn outward(&self, maps: &[DAffine3]) -> Vec<DAffine3> {
+        let Surface { centre, radius, .. } = self.target;
+        let outward = |map: &DAffine3| {
+            let translation = radius * map.translation + centre - map.matrix3 * centre;
+            DAffine3::from_mat3_translation(map.matrix3, translation)
+        };
+        maps.iter().map(outward).map(|map| if map.is_finite() { map } else { DAffine3::IDENTITY }).collect()
+    }
+
+    /// A skin of all given vertices, of rows for the places.
+    fn skin(&self, count: usize, rows: &[Vec<(u32, f64)>], maps: Vec<Vec<DAffine3>>) -> Skin {
+        let mut strongest = vec![(0.0, 0); count];
+        for (row, &vertex) in rows.iter().zip(&self.target.vertex) {
+            for &(handle, share) in row {
+                if share > strongest[handle as usize].0 {
+                    strongest[handle as usize] = (share, vertex);
+                }
+            }
+        }
+        Skin {
+            handles: strongest.into_iter().map(|best| best.1).collect(),
+            rows: self.target.place.iter().map(|&place| rows[place as usize].clone()).collect(),
+            maps,
+        }
+    }
+}
+
+/// Points displaced smoothly so that pinned ones come to lie where they belong; the spline is over the points at `rest`.
+fn splined(rest: &[DVec3], points: &[DVec3], pins: &[Pin]) -> Vec<DVec3> {
+    let missing = |pin: &Pin| (rest[pin.vertex as usize], pin.point - points[pin.vertex as usize]);
+    let spline = Spline::new(&pins.iter().map(missing).collect::<Vec<_>>());
+    points.iter().zip(rest).map(|(&p, &r)| p + spline.at(r)).collect()
+}
+
+fn count(pairs: usize) -> String {
+    if pairs == 1 { "one pair".to_owned() } else { format!("{pairs} pairs") }
+}

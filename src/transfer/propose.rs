@@ -1,0 +1,199 @@
+//! Where the key points of one mesh lie on another, without being told, or told of some of them.
+//!
+//! Both surfaces are thinned out to samples with all distances between them ([`surface`]). A spread of the source's
+//! samples and the points asked for look for their places together ([`consensus`]), from several starts ([`starts`]):
+//! the figures laid over each other as they stand, stretched to the same box, turned, or as the given pairs say; the
+//! outcome in which points agree best with each other counts. Given pairs stay as they are and are listened to more.
+//!
+//! The idea of drawing points to places with the right distances to others is that of quadratic assignment (J. Maciel
+//! and J. P. Costeira, *A global solution to sparse correspondence problems*, IEEE Transactions on Pattern Analysis and
+//! Machine Intelligence 25(2), 2003, pp. 187–199), here relaxed by rounds of averages.
+
+mod consensus;
+mod paths;
+mod similarity;
+mod starts;
+mod surface;
+mod tips;
+
+use consensus::{Consensus, LAST, Point, Rules, Target};
+use glam::DVec3;
+use serde::Serialize;
+use surface::{SAMPLES, Surface};
+
+/// Samples of the source that look for their places beside the points asked for: in the first rounds, and in the last.
+const COMPANY: [usize; 2] = [60, 120];
+
+/// Samples of the target that are considered in the first rounds.
+const CONSIDERED: usize = 400;
+
+/// How much is listened to a point asked for, where a sample counts one: users' points may lie close together.
+const ASKED: f64 = 0.3;
+
+/// A proposed target point.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct Proposal {
+    /// A vertex of the target.
+    pub target: u32,
+    /// From 0 (a guess) to 1 (given).
+    pub confidence: f64,
+}
+
+/// Proposed target points.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Proposals {
+    /// One for each point; a known one is echoed with confidence 1.
+    pub points: Vec<Proposal>,
+    /// The point that is most worth placing by hand next; `None` if all are known.
+    pub next: Option<usize>,
+}
+
+/// Why nothing can be proposed.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+pub enum ProposeError {
+    /// One of the meshes has no vertices.
+    #[error("the {0} has no vertices: there is nothing to match")]
+    Empty(&'static str),
+    /// A point is not a vertex.
+    #[error("point {index} is vertex {vertex}, but the {mesh} has only {vertices} vertices")]
+    OutOfRange {
+        /// Which point.
+        index: usize,
+        /// Its vertex number.
+        vertex: u32,
+        /// Which mesh.
+        mesh: &'static str,
+        /// How many vertices that has.
+        vertices: usize,
+    },
+    /// Not one entry a point.
+    #[error("{known} known places for {points} points: there must be one entry for each")]
+    Count {
+        /// How many points.
+        points: usize,
+        /// How many entries.
+        known: usize,
+    },
+}
+
+/// Two meshes, prepared for proposals.
+#[derive(Clone, Debug)]
+pub struct Proposer {
+    source: Surface,
+    target: Surface,
+    /// How the figures lie over each other as far as shapes alone tell.
+    orientations: Vec<starts::Orientation>,
+}
+
+impl Proposer {
+    /// Thins both meshes out and finds out which way round they lie.
+    ///
+    /// `faces` are #F triples of vertex numbers, `positions` #V points; the reference poses. Seams, pieces, holes and
+    /// edges of many faces are fine. About 0.5 s for 20,000 + 20,000 vertices.
+    pub fn new(
+        source_faces: &[[u32; 3]],
+        source_positions: &[DVec3],
+        target_faces: &[[u32; 3]],
+        target_positions: &[DVec3],
+    ) -> Result<Self, ProposeError> {
+        let source = Surface::new(source_faces, source_positions, SAMPLES).ok_or(ProposeError::Empty("source"))?;
+        let target = Surface::new(target_faces, target_positions, SAMPLES).ok_or(ProposeError::Empty("target"))?;
+        let mut proposer = Self { source, target, orientations: Vec::new() };
+        proposer.orientations = starts::orientations(&proposer);
+        Ok(proposer)
+    }
+
+    /// Proposes a target vertex for every point (source vertices) whose place is not `known`.
+    pub fn propose(&self, points: &[u32], known: &[Option<u32>]) -> Result<Proposals, ProposeError> {
+        self.check(points, known)?;
+        let crowd = self.crowd(COMPANY[0], points, known);
+        let start = starts::best(self, &crowd);
+        let crowd = self.crowd(COMPANY[1], points, known);
+        let mut consensus = Consensus::new(
+            &self.target,
+            self.target.len(),
+            &crowd.points,
+            &crowd.distances,
+            start.spread(crowd.points.len(), COMPANY, points.len()),
+        );
+        for reach in [0.2, 0.15, 0.1, 0.1] {
+            consensus.round(&Rules { reach, ..LAST });
+        }
+        Ok(self.read(&consensus, points, known))
+    }
+
+    fn check(&self, points: &[u32], known: &[Option<u32>]) -> Result<(), ProposeError> {
+        if points.len() != known.len() {
+            return Err(ProposeError::Count { points: points.len(), known: known.len() });
+        }
+        let outside = |mesh: &'static str, vertices: usize, index: usize, vertex: u32| {
+            let error = ProposeError::OutOfRange { index, vertex, mesh, vertices };
+            if (vertex as usize) < vertices { Ok(()) } else { Err(error) }
+        };
+        for (index, (&vertex, known)) in points.iter().zip(known).enumerate() {
+            outside("source", self.source.points.len(), index, vertex)?;
+            if let Some(vertex) = known {
+                outside("target", self.target.points.len(), index, *vertex)?;
+            }
+        }
+        Ok(())
+    }
+
+    /// The first `company` samples of the source and then the points asked for.
+    fn crowd(&self, company: usize, points: &[u32], known: &[Option<u32>]) -> Crowd {
+        let company = company.min(self.source.len());
+        let vertices: Vec<u32> = self.source.samples[..company].iter().chain(points).copied().collect();
+        let source = &self.source;
+        let rows: Vec<Vec<f32>> =
+            vertices.iter().map(|&v| source.distances_from(&source.readings[v as usize])).collect();
+        let mut distances = Vec::with_capacity(vertices.len() * vertices.len());
+        for row in &rows {
+            let far = |&v: &u32| source.readings[v as usize].iter().map(|&(s, w)| w * row[s as usize]).sum::<f32>();
+            distances.extend(vertices.iter().map(far));
+        }
+        let given = |k: &Option<u32>| k.map(|v| self.place(v));
+        let givens = (0..company).map(|_| None).chain(known.iter().map(given));
+        let points = vertices.iter().zip(givens).enumerate().map(|(i, (&v, given))| Point {
+            place: source.points[v as usize],
+            normal: source.vertex_normals[v as usize],
+            weight: if i < company { 1.0 } else { ASKED },
+            given,
+        });
+        Crowd { points: points.collect(), distances, company }
+    }
+
+    /// A vertex of the target as a place.
+    fn place(&self, vertex: u32) -> Target {
+        let reading = &self.target.readings[vertex as usize];
+        Target {
+            place: self.target.points[vertex as usize],
+            distances: self.target.distances_from(reading),
+            sample: self.target.cell[vertex as usize],
+        }
+    }
+
+    fn read(&self, consensus: &Consensus, points: &[u32], known: &[Option<u32>]) -> Proposals {
+        let first = consensus.at.len() - points.len();
+        let proposal = |(i, known): (usize, &Option<u32>)| {
+            if let Some(target) = known {
+                return Proposal { target: *target, confidence: 1.0 };
+            }
+            let (target, cost) = consensus.vertex(first + i, &LAST).unwrap_or((self.target.samples[0], 1.0));
+            Proposal { target, confidence: (-cost / 0.004).exp().clamp(0.0, 0.99) }
+        };
+        let points: Vec<Proposal> = known.iter().enumerate().map(proposal).collect();
+        let unknown = (0..points.len()).filter(|&i| known[i].is_none());
+        let next = unknown.min_by(|&a, &b| points[a].confidence.total_cmp(&points[b].confidence));
+        Proposals { points, next }
+    }
+}
+
+/// Points of the source that look for their places together.
+struct Crowd {
+    /// The company first, then the points asked for.
+    pub points: Vec<Point>,
+    /// Distances between all of them, row by row.
+    pub distances: Vec<f32>,
+    /// How many are company.
+    pub company: usize,
+}

@@ -1,0 +1,84 @@
+//! Tips of limbs, and which tip of one figure is which of another.
+//!
+//! A tip is farther from the rest of the surface than all around it (hands, feet, head, tail). Between figures of one
+//! build, tips keep their distances along the surface however the limbs are held; what these leave open (left and right)
+//! the places decide.
+
+use super::Crowd;
+use super::surface::Surface;
+use glam::{DMat3, DVec3};
+
+/// Within this distance (a share of the diagonal) a tip is the farthest.
+const AROUND: f32 = 0.15;
+
+/// Tips that take part.
+const MOST: usize = 12;
+
+/// Partial assignments that are followed.
+const BEAM: usize = 64;
+
+/// What it costs to leave a tip without a partner.
+const ALONE: f64 = 0.03;
+
+/// What a squared distance between places costs, where one of distances along the surface costs one.
+const PLACE: f64 = 0.2;
+
+/// Samples among the first `among` that are tips, in the order of the samples.
+pub fn tips(surface: &Surface, among: usize) -> Vec<u32> {
+    let among = among.min(surface.len());
+    let far = |s: u32| surface.row(s)[..among].iter().sum::<f32>();
+    let far: Vec<f32> = (0..among as u32).map(far).collect();
+    let typical = far.iter().sum::<f32>() / among.max(1) as f32;
+    let tip = |&s: &u32| {
+        let own = far[s as usize];
+        let row = surface.row(s);
+        own > typical && (0..among).all(|o| o == s as usize || row[o] > AROUND || (far[o], o) < (own, s as usize))
+    };
+    (0..among as u32).filter(tip).take(MOST).collect()
+}
+
+/// Assigns tips of the crowd's company (the first samples of `source`) to tips of the target.
+///
+/// `map` lays the source over the target. Returns (member of the crowd, sample of the target).
+pub fn assign(source: &Surface, target: &Surface, crowd: &Crowd, map: DMat3) -> Vec<(u32, u32)> {
+    let (own, others) = (tips(source, crowd.company), tips(target, crowd.company));
+    let n = crowd.points.len();
+    let row = |i: u32| &crowd.distances[i as usize * n..(i as usize + 1) * n];
+    let fixed: Vec<(u32, &[f32])> = (0..)
+        .zip(&crowd.points)
+        .filter_map(|(i, p): (u32, _)| Some((i, p.given.as_ref()?.distances.as_slice())))
+        .collect();
+    let mut beam: Vec<(f64, Vec<Option<u32>>)> = vec![(0.0, Vec::new())];
+    for &tip in &own {
+        let mut next = Vec::new();
+        for (cost, partners) in &beam {
+            next.push((cost + ALONE, [partners.as_slice(), &[None]].concat()));
+            for &other in others.iter().filter(|o| !partners.contains(&Some(**o))) {
+                let before = own.iter().zip(partners).filter_map(|(&s, p)| Some((s, target.row((*p)?))));
+                let pairs =
+                    before.chain(fixed.iter().copied()).map(|(s, to)| (row(tip)[s as usize], to[other as usize]));
+                let off = mean_square(pairs);
+                let apart = apart(crowd.points[tip as usize].place, target.places[other as usize], map);
+                next.push((cost + off + PLACE * apart, [partners.as_slice(), &[Some(other)]].concat()));
+            }
+        }
+        next.sort_by(|a, b| a.0.total_cmp(&b.0));
+        next.truncate(BEAM);
+        beam = next;
+    }
+    let best = beam.into_iter().next().map(|b| b.1).unwrap_or_default();
+    own.iter().zip(best).filter_map(|(&tip, partner)| Some((tip, partner?))).collect()
+}
+
+fn apart(from: DVec3, to: DVec3, map: DMat3) -> f64 {
+    (map * from).distance_squared(to)
+}
+
+fn mean_square(pairs: impl Iterator<Item = (f32, f32)>) -> f64 {
+    let (mut sum, mut count) = (0.0, 0.0_f64);
+    for (here, there) in pairs {
+        sum += f64::from(here - there).powi(2);
+        count += 1.0;
+    }
+    sum / count.max(1.0)
+}

@@ -1,0 +1,181 @@
+//! Where each point of the target lies on the source: the target is bent, as rigidly as it can, onto the source.
+//!
+//! The energy is that of Olga Sorkine and Marc Alexa, *As-rigid-as-possible surface modeling*, SGP 2007, plus a pull
+//! towards the nearest point of the source whose normal agrees, which grows from round to round as in Robert Sumner and
+//! Jovan Popović, *Deformation transfer for triangle meshes*, SIGGRAPH 2004, §4. The system of each strength of the pull
+//! is factored once; a round is one solve.
+
+use super::kd_tree::KdTree;
+use super::surface::{Surface, nearest_in_triangle};
+use crate::linalg::cholesky::{Cholesky, NotPositiveDefinite};
+use crate::linalg::polar;
+use crate::mesh::laplacian::Laplacian;
+use glam::{DMat3, DVec3};
+
+/// The pull towards the source, by round of growth: density over the unit of area share.
+const PULLS: [f64; 4] = [9.0, 90.0, 900.0, 9000.0];
+/// Solves with each.
+const ROUNDS: usize = 2;
+/// What a difference of unit normals counts, as a length in the unit ball.
+const NORMAL: f64 = 0.2;
+/// Cosine between normals below which a nearest point is none.
+const AGREE: f64 = 0.3;
+/// Cotangents are kept above this: obtuse triangles do not push.
+const LEAST_COTANGENT: f64 = 0.01;
+
+/// A place on a mesh: a face, and the shares of its corners.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Foot {
+    /// The number of the face.
+    pub face: u32,
+    /// Shares that sum to 1.
+    pub shares: [f64; 3],
+}
+
+/// The source as something to be found on.
+pub struct Ground {
+    tree: KdTree<6>,
+}
+
+impl Ground {
+    /// Prepares a surface.
+    pub fn new(surface: &Surface) -> Self {
+        let points: Vec<[f64; 6]> = surface.positions.iter().zip(&surface.normals).map(|(&p, &n)| key(p, n)).collect();
+        Self { tree: KdTree::new(&points) }
+    }
+
+    /// The nearest place on the source to a point with a normal, seen from the nearest vertex; `None` for a surface
+    /// without faces.
+    pub fn foot(&self, surface: &Surface, point: DVec3, normal: DVec3) -> Option<(Foot, DVec3, u32)> {
+        let vertex = self.tree.nearest(&key(point, normal), |_| true)?;
+        let at = |f: u32| {
+            let corners = surface.faces[f as usize].map(|v| surface.positions[v as usize]);
+            let shares = nearest_in_triangle(point, corners);
+            let foot = corners[0] * shares[0] + corners[1] * shares[1] + corners[2] * shares[2];
+            (Foot { face: f, shares }, foot, foot.distance_squared(point))
+        };
+        let found = surface.faces_around(vertex as usize).iter().map(|&f| at(f)).min_by(|a, b| a.2.total_cmp(&b.2))?;
+        Some((found.0, found.1, vertex))
+    }
+}
+
+fn key(p: DVec3, n: DVec3) -> [f64; 6] {
+    [p.x, p.y, p.z, NORMAL * n.x, NORMAL * n.y, NORMAL * n.z]
+}
+
+/// A pair: a vertex of the target and where it belongs on the source.
+#[derive(Clone, Copy, Debug)]
+pub struct Pin {
+    /// The number of the target's vertex.
+    pub vertex: u32,
+    /// A point of the source.
+    pub point: DVec3,
+}
+
+/// The target as something to be bent, with its factored systems.
+pub struct Registration {
+    edges: Vec<([u32; 2], f64)>,
+    factors: Vec<Cholesky>,
+}
+
+impl Registration {
+    /// Factors the systems of a target.
+    pub fn new(target: &Surface) -> Result<Self, NotPositiveDefinite> {
+        let laplacian = Laplacian::new(&target.faces, &target.positions);
+        let edges: Vec<([u32; 2], f64)> =
+            laplacian.edges.iter().zip(&laplacian.cotangents).map(|(&e, &c)| (e, c.max(LEAST_COTANGENT))).collect();
+        let mut entries = Vec::with_capacity(3 * edges.len() + target.len());
+        for &([a, b], weight) in &edges {
+            entries.extend([(a, a, weight), (b, b, weight), (a.max(b), a.min(b), -weight)]);
+        }
+        let stiff = entries.len();
+        let mut factors = Vec::with_capacity(PULLS.len());
+        for pull in PULLS {
+            entries.truncate(stiff);
+            entries.extend(target.mass.iter().zip(0_u32..).map(|(&m, v)| (v, v, pull * m)));
+            factors.push(Cholesky::new(target.len(), &entries)?);
+        }
+        Ok(Self { edges, factors })
+    }
+
+    /// Bends the target onto the source: #N positions of its vertices near the source's surface.
+    ///
+    /// `rest` has the shape that is kept, `start` is where the target is thought to end. `quick` is for a start
+    /// that was a result before: only the last rounds are done.
+    pub fn bend(
+        &self,
+        (source, ground): (&Surface, &Ground),
+        target: &Surface,
+        rest: &[DVec3],
+        start: Vec<DVec3>,
+        pins: &[Pin],
+        quick: bool,
+    ) -> Vec<DVec3> {
+        let mut at = start;
+        let first = if quick { PULLS.len() - 2 } else { 0 };
+        for level in first..PULLS.len() {
+            for _ in 0..if quick { 1 } else { ROUNDS } {
+                let mut goal = goals(source, ground, target, &at);
+                pins.iter().for_each(|pin| goal[pin.vertex as usize] = pin.point);
+                self.solve(level, target, rest, &mut at, &goal);
+            }
+        }
+        at
+    }
+
+    /// One round: rotations of the vertices, then positions.
+    fn solve(&self, level: usize, target: &Surface, rest: &[DVec3], at: &mut [DVec3], goal: &[DVec3]) {
+        let (Some(factor), Some(pull)) = (self.factors.get(level), PULLS.get(level)) else { return };
+        let turns = self.turns(rest, at);
+        let n = at.len();
+        let mut side: Vec<DVec3> = goal.iter().zip(&target.mass).map(|(&g, &m)| g * (pull * m)).collect();
+        for &([a, b], weight) in &self.edges {
+            let (a, b) = (a as usize, b as usize);
+            let edge = (turns[a] + turns[b]) * (rest[a] - rest[b]) * (0.5 * weight);
+            side[a] += edge;
+            side[b] -= edge;
+        }
+        let mut columns = vec![0.0; 3 * n];
+        for (v, s) in side.iter().enumerate() {
+            (columns[v], columns[n + v], columns[2 * n + v]) = (s.x, s.y, s.z);
+        }
+        factor.solve(&mut columns);
+        for (v, p) in at.iter_mut().enumerate() {
+            let solved = DVec3::new(columns[v], columns[n + v], columns[2 * n + v]);
+            if solved.is_finite() {
+                *p = solved;
+            }
+        }
+    }
+
+    /// #N rotations that carry the edges around each vertex best from `rest` to `at`.
+    fn turns(&self, rest: &[DVec3], at: &[DVec3]) -> Vec<DMat3> {
+        let mut sums = vec![DMat3::ZERO; rest.len()];
+        for &([a, b], weight) in &self.edges {
+            let (a, b) = (a as usize, b as usize);
+            let (from, to) = ((rest[a] - rest[b]) * weight, at[a] - at[b]);
+            let share = DMat3::from_cols(to * from.x, to * from.y, to * from.z);
+            sums[a] += share;
+            sums[b] += share;
+        }
+        sums.into_iter().map(polar::rotation).collect()
+    }
+}
+
+/// For each vertex the nearest place of the source, or where it is if that faces another way.
+fn goals(source: &Surface, ground: &Ground, target: &Surface, at: &[DVec3]) -> Vec<DVec3> {
+    let normals = target.normals_of(at);
+    at.iter()
+        .zip(&normals)
+        .map(|(&p, &n)| match ground.foot(source, p, n) {
+            Some((_, foot, vertex)) if source.normals[vertex as usize].dot(n) > AGREE => foot,
+            _ => p,
+        })
+        .collect()
+}
+
+/// For each vertex of the bent target its place on the source.
+pub fn feet(source: &Surface, ground: &Ground, target: &Surface, at: &[DVec3]) -> Vec<Option<Foot>> {
+    let normals = target.normals_of(at);
+    at.iter().zip(&normals).map(|(&p, &n)| ground.foot(source, p, n).map(|found| found.0)).collect()
+}

@@ -1,0 +1,79 @@
+//! The motions of given bones in a pose: rotations bone by bone, then all translations together.
+
+use crate::linalg::rigid_fit::Moments;
+use crate::transfer::surface::Surface;
+use glam::{DAffine3, DVec3};
+use nalgebra::{Cholesky, DMatrix, Dyn};
+
+/// The rotation of a bone is that of the vertices which follow little else: shares count to this power.
+const OWN: i32 = 4;
+/// How much translations are held to those of the bones on their own.
+const HOLD: f64 = 1e-3;
+
+/// What the fit of a pose needs of the weights.
+#[derive(Clone, Debug)]
+pub struct Motions {
+    rows: Vec<Vec<(u32, f64)>>,
+    bones: usize,
+    hold: Vec<f64>,
+    system: Option<Cholesky<f64, Dyn>>,
+}
+
+impl Motions {
+    /// Prepares the weights of a surface.
+    pub fn new(surface: &Surface, rows: &[Vec<(u32, f64)>], bones: usize) -> Self {
+        let mut system = DMatrix::zeros(bones, bones);
+        let mut hold = vec![1e-12; bones];
+        for (row, m) in rows.iter().zip(&surface.mass) {
+            for &(i, a) in row {
+                hold[i as usize] += HOLD * m * a;
+                row.iter().for_each(|&(j, b)| system[(i as usize, j as usize)] += m * a * b);
+            }
+        }
+        (0..bones).for_each(|i| system[(i, i)] += hold[i]);
+        Self { rows: rows.to_vec(), bones, hold, system: system.cholesky() }
+    }
+
+    /// The motion of each bone that carries the surface best to #N other positions.
+    pub fn fit(&self, surface: &Surface, pose: &[DVec3]) -> Vec<DAffine3> {
+        let mut moments = vec![Moments::default(); self.bones];
+        for (v, row) in self.rows.iter().enumerate() {
+            for &(bone, share) in row {
+                let weight = surface.mass[v] * share.powi(OWN);
+                moments[bone as usize].add(weight, surface.positions[v], pose[v]);
+            }
+        }
+        let mut maps: Vec<DAffine3> = moments
+            .iter()
+            .map(|m| {
+                let motion = m.motion();
+                DAffine3::from_mat3_translation(motion.rotation, motion.translation)
+            })
+            .collect();
+        self.translations(surface, pose, &mut maps);
+        maps
+    }
+
+    /// Given the rotations, the translations that carry the blended surface best.
+    fn translations(&self, surface: &Surface, pose: &[DVec3], maps: &mut [DAffine3]) {
+        let Some(system) = &self.system else { return };
+        let mut side = DMatrix::zeros(self.bones, 3);
+        for (i, map) in maps.iter().enumerate() {
+            (0..3).for_each(|k| side[(i, k)] = self.hold[i] * map.translation[k]);
+        }
+        for (v, row) in self.rows.iter().enumerate() {
+            let turned = row.iter().map(|&(b, share)| share * (maps[b as usize].matrix3 * surface.positions[v]));
+            let left = pose[v] - turned.sum::<DVec3>();
+            for &(i, share) in row {
+                (0..3).for_each(|k| side[(i as usize, k)] += surface.mass[v] * share * left[k]);
+            }
+        }
+        system.solve_mut(&mut side);
+        for (i, map) in maps.iter_mut().enumerate() {
+            let solved = DVec3::new(side[(i, 0)], side[(i, 1)], side[(i, 2)]);
+            if solved.is_finite() {
+                map.translation = solved;
+            }
+        }
+    }
+}

@@ -1,0 +1,243 @@
+//! A mesh as the transfer sees it: welded, without loose vertices, at unit size.
+
+use super::kd_tree::KdTree;
+use crate::mesh::ball::unit_ball;
+use crate::mesh::{face, weld};
+use crate::sequence::Sequence;
+use glam::DVec3;
+
+/// How far apart, in radii of the mesh, vertices along a seam may lie.
+const WELD_TOLERANCE: f64 = 1e-6;
+
+/// The vertices that faces use, one for each place on the surface, about the centre of the mesh and in its radius.
+#[derive(Clone, Debug)]
+pub struct Surface {
+    /// For each given vertex, its place here; for a vertex without a face the nearest place.
+    pub place: Vec<u32>,
+    /// For each place, the first given vertex there.
+    pub vertex: Vec<u32>,
+    /// #N positions in the unit ball.
+    pub positions: Vec<DVec3>,
+    /// Faces that name three different places.
+    pub faces: Vec<[u32; 3]>,
+    /// #N unit normals (zero where there is none).
+    pub normals: Vec<DVec3>,
+    /// #N shares of the area, which sum to 1.
+    pub mass: Vec<f64>,
+    /// The middle of the bounding box, in the units of the sequence.
+    pub centre: DVec3,
+    /// The largest distance from it, in the units of the sequence.
+    pub radius: f64,
+    /// Where the faces around each place begin in `around`, #N + 1.
+    start: Vec<u32>,
+    around: Vec<u32>,
+    /// Where the neighbours of each place begin in `beside`, #N + 1.
+    neighbour_start: Vec<u32>,
+    beside: Vec<u32>,
+}
+
+impl Surface {
+    /// The surface of a sequence's reference pose. Vertices are one if they agree in the reference and in every pose.
+    pub fn new(sequence: &Sequence) -> Self {
+        let (centre, radius) = unit_ball(sequence.faces(), sequence.reference());
+        let mut poses: Vec<&[DVec3]> = vec![sequence.reference()];
+        poses.extend(sequence.poses().iter().map(|pose| pose.positions.as_slice()));
+        let stands = weld::weld(&poses, WELD_TOLERANCE * radius);
+        let mut used = vec![false; stands.len()];
+        for &v in sequence.faces().iter().flatten() {
+            used[stands[v as usize] as usize] = true;
+        }
+        let mut place = vec![u32::MAX; stands.len()];
+        let mut vertex = Vec::new();
+        for v in 0..stands.len() {
+            if stands[v] as usize == v && used[v] {
+                place[v] = vertex.len() as u32;
+                vertex.push(v as u32);
+            }
+        }
+        for v in 0..stands.len() {
+            place[v] = place[stands[v] as usize];
+        }
+        let faces: Vec<[u32; 3]> = sequence
+            .faces()
+            .iter()
+            .map(|face| face.map(|v| place[v as usize]))
+            .filter(|&[a, b, c]| a != b && b != c && c != a)
+            .collect();
+        let mut surface = Self {
+            place,
+            positions: Vec::new(),
+            normals: Vec::new(),
+            mass: Vec::new(),
+            centre,
+            radius,
+            start: Vec::new(),
+            around: Vec::new(),
+            neighbour_start: Vec::new(),
+            beside: Vec::new(),
+            vertex,
+            faces,
+        };
+        surface.positions = surface.unit(sequence.reference());
+        surface.normals = surface.normals_of(&surface.positions);
+        surface.mass = surface.shares();
+        surface.link();
+        surface.place_loose(sequence.reference());
+        surface
+    }
+
+    /// Whether there is no place: no face.
+    pub fn is_empty(&self) -> bool {
+        self.vertex.is_empty()
+    }
+
+    /// The number of places.
+    pub fn len(&self) -> usize {
+        self.vertex.len()
+    }
+
+    /// #N positions in the unit ball of #V given ones.
+    pub fn unit(&self, given: &[DVec3]) -> Vec<DVec3> {
+        self.vertex.iter().map(|&v| self.inward(given[v as usize])).collect()
+    }
+
+    /// A point of the sequence in the unit ball.
+    pub fn inward(&self, point: DVec3) -> DVec3 {
+        point / self.radius - self.centre / self.radius
+    }
+
+    /// #N unit normals of the places at other positions.
+    pub fn normals_of(&self, positions: &[DVec3]) -> Vec<DVec3> {
+        let mut normals = vec![DVec3::ZERO; self.len()];
+        for &f in &self.faces {
+            let normal = face::double_area_normal(face::corners(positions, f));
+            f.iter().for_each(|&v| normals[v as usize] += normal);
+        }
+        normals.into_iter().map(DVec3::normalize_or_zero).collect()
+    }
+
+    /// The faces around a place.
+    pub fn faces_around(&self, place: usize) -> &[u32] {
+        &self.around[self.start[place] as usize..self.start[place + 1] as usize]
+    }
+
+    /// The places that share an edge with a place.
+    pub fn neighbours(&self, place: usize) -> &[u32] {
+        &self.beside[self.neighbour_start[place] as usize..self.neighbour_start[place + 1] as usize]
+    }
+
+    fn shares(&self) -> Vec<f64> {
+        let areas = face::areas(&self.faces, &self.positions);
+        let total: f64 = areas.iter().sum();
+        // Places in flat faces alone count a little, so that no system is singular.
+        let mut mass = vec![1e-6 / self.len().max(1) as f64; self.len()];
+        if total > 0.0 {
+            for (f, area) in self.faces.iter().zip(&areas) {
+                f.iter().for_each(|&v| mass[v as usize] += area / (3.0 * total));
+            }
+        }
+        let sum: f64 = mass.iter().sum();
+        mass.iter_mut().for_each(|m| *m /= sum.max(f64::MIN_POSITIVE));
+        mass
+    }
+
+    fn link(&mut self) {
+        let corners = self.faces.iter().zip(0_u32..).flat_map(|(face, f)| face.map(|v| (v, f)));
+        (self.start, self.around) = lists(self.len(), corners.collect());
+        let pairs = self.faces.iter().flat_map(|&[a, b, c]| [(a, b), (b, a), (b, c), (c, b), (c, a), (a, c)]);
+        (self.neighbour_start, self.beside) = lists(self.len(), pairs.collect());
+    }
+
+    fn place_loose(&mut self, reference: &[DVec3]) {
+        if !self.place.contains(&u32::MAX) {
+            return;
+        }
+        let points: Vec<[f64; 3]> = self.positions.iter().map(DVec3::to_array).collect();
+        let tree = KdTree::new(&points);
+        for (v, &given) in reference.iter().enumerate() {
+            if self.place[v] == u32::MAX {
+                let at = self.inward(given).clamp(DVec3::splat(-1e6), DVec3::splat(1e6));
+                self.place[v] = tree.nearest(&at.to_array(), |_| true).unwrap_or(0);
+            }
+        }
+    }
+}
+
+/// Lists of the second numbers by the first, each list ascending and without repetition.
+fn lists(count: usize, mut pairs: Vec<(u32, u32)>) -> (Vec<u32>, Vec<u32>) {
+    pairs.sort_unstable();
+    pairs.dedup();
+    let mut start = vec![0; count + 1];
+    for &(a, _) in &pairs {
+        start[a as usize + 1] += 1;
+    }
+    for i in 0..count {
+        start[i + 1] += start[i];
+    }
+    (start, pairs.into_iter().map(|(_, b)| b).collect())
+}
+
+/// The shares of the corners at the point of a triangle nearest to `p`. (Christer Ericson, Real-Time Collision
+/// Detection, 2005, §5.1.5.)
+pub fn nearest_in_triangle(p: DVec3, [a, b, c]: [DVec3; 3]) -> [f64; 3] {
+    let (ab, ac, ap) = (b - a, c - a, p - a);
+    let (d1, d2) = (ab.dot(ap), ac.dot(ap));
+    if d1 <= 0.0 && d2 <= 0.0 {
+        return [1.0, 0.0, 0.0];
+    }
+    let bp = p - b;
+    let (d3, d4) = (ab.dot(bp), ac.dot(bp));
+    if d3 >= 0.0 && d4 <= d3 {
+        return [0.0, 1.0, 0.0];
+    }
+    let vc = d1 * d4 - d3 * d2;
+    if vc <= 0.0 && d1 >= 0.0 && d3 <= 0.0 && d1 - d3 > 0.0 {
+        let t = d1 / (d1 - d3);
+        return [1.0 - t, t, 0.0];
+    }
+    let cp = p - c;
+    let (d5, d6) = (ab.dot(cp), ac.dot(cp));
+    if d6 >= 0.0 && d5 <= d6 {
+        return [0.0, 0.0, 1.0];
+    }
+    let vb = d5 * d2 - d1 * d6;
+    if vb <= 0.0 && d2 >= 0.0 && d6 <= 0.0 && d2 - d6 > 0.0 {
+        let t = d2 / (d2 - d6);
+        return [1.0 - t, 0.0, t];
+    }
+    let va = d3 * d6 - d5 * d4;
+    let (along, back) = (d4 - d3, d5 - d6);
+    if va <= 0.0 && along >= 0.0 && back >= 0.0 && along + back > 0.0 {
+        let t = along / (along + back);
+        return [0.0, 1.0 - t, t];
+    }
+    let sum = va + vb + vc;
+    if sum > 0.0 && sum.is_finite() { [va / sum, vb / sum, vc / sum] } else { [1.0, 0.0, 0.0] }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_nearest_point_of_a_triangle_is_nearer_than_others() {
+        let corners = [DVec3::ZERO, DVec3::new(2.0, 0.1, 0.0), DVec3::new(0.3, 1.5, 0.4)];
+        let at = |s: [f64; 3]| corners[0] * s[0] + corners[1] * s[1] + corners[2] * s[2];
+        for i in 0..7 {
+            for j in 0..7 {
+                let p = DVec3::new(f64::from(i) - 3.0, f64::from(j) - 3.0, 0.7);
+                let shares = nearest_in_triangle(p, corners);
+                assert!((shares.iter().sum::<f64>() - 1.0).abs() < 1e-12 && shares.iter().all(|&s| s >= 0.0));
+                let found = at(shares).distance(p);
+                for k in 0..=20 {
+                    for l in 0..=(20 - k) {
+                        let (s, t) = (f64::from(k) / 20.0, f64::from(l) / 20.0);
+                        assert!(found <= at([1.0 - s - t, s, t]).distance(p) + 1e-12);
+                    }
+                }
+            }
+        }
+        let flat = nearest_in_triangle(DVec3::ONE, [DVec3::ZERO; 3]);
+        assert!(flat.iter().all(|s| s.is_finite()));
+    }
+}

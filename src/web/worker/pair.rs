@@ -1,0 +1,114 @@
+//! Messages about the target: opening it, and where the key points lie on it.
+
+use super::Engine;
+use super::sequences::{describe, kept_sequence, rounded};
+use super::values::{Reply, parsed, plain, put, read_file, sentence, single};
+use crate::import::{self, Options};
+use crate::sequence::Sequence;
+use crate::transfer::propose::Proposer;
+use crate::weights::{Biharmonic, Parameters};
+use crate::zoo::{self, Recipe};
+use js_sys::{Array, Object, Uint32Array};
+use wasm_bindgen::prelude::*;
+
+#[wasm_bindgen]
+impl Engine {
+    /// Opens files as the target; as [`Engine::open`].
+    pub fn target(&mut self, files: &Array, options: JsValue) -> Reply {
+        let files = files.iter().map(|file| read_file(&file)).collect::<Result<Vec<_>, _>>()?;
+        let options: Options = parsed(options)?;
+        let imported = import::open(&files, &options).map_err(sentence)?;
+        let sequence = rounded(&imported.sequence)?;
+        let reply = describe(&sequence, &imported.clips, imported.clip, &imported.warnings)?;
+        self.replace_target(Some(sequence));
+        Ok(reply)
+    }
+
+    /// Makes a creature as the target; as [`Engine::zoo`].
+    pub fn target_zoo(&mut self, recipe: JsValue) -> Reply {
+        let sequence = rounded(&creature(recipe)?.sequence)?;
+        let reply = describe(&sequence, &[], None, &[])?;
+        self.replace_target(Some(sequence));
+        Ok(reply)
+    }
+
+    /// Takes back a target that another worker opened and the page kept.
+    pub fn restore_target(&mut self, kept: JsValue) -> Result<(), JsValue> {
+        let target = kept_sequence(kept)?;
+        self.replace_target(Some(target));
+        Ok(())
+    }
+
+    /// Forgets the target.
+    pub fn drop_target(&mut self) {
+        self.replace_target(None);
+    }
+
+    /// Proposes where `points` of the source lie on the target; `known` has a vertex or −1 for each of them.
+    pub fn propose(&mut self, points: &[u32], known: &[i32]) -> Reply {
+        let retained = self.proposer.take();
+        let (source, target) = (self.open_sequence()?, self.open_target()?);
+        let proposer = match retained {
+            Some(proposer) => proposer,
+            None => Proposer::new(source.faces(), source.reference(), target.faces(), target.reference())
+                .map_err(sentence)?,
+        };
+        let known: Vec<Option<u32>> = known.iter().map(|&vertex| u32::try_from(vertex).ok()).collect();
+        let proposals = proposer.propose(points, &known).map_err(sentence)?;
+        self.proposer = Some(proposer);
+        let reply: JsValue = Object::new().into();
+        let targets: Vec<u32> = proposals.points.iter().map(|point| point.target).collect();
+        let confidences: Vec<f64> = proposals.points.iter().map(|point| point.confidence).collect();
+        put(&reply, "targets", &Uint32Array::from(targets.as_slice()))?;
+        put(&reply, "confidences", &single(&confidences))?;
+        put(&reply, "next", &plain(&proposals.next)?)?;
+        Ok(reply)
+    }
+
+    /// The weights of some vertices of the target, #V rows × the number of them.
+    pub fn target_weights(&mut self, handles: &[u32]) -> Reply {
+        let retained = self.target_field.take();
+        let target = self.open_target()?;
+        let field = match retained {
+            Some(field) => field,
+            None => Biharmonic::new(target.faces(), target.reference()).map_err(sentence)?,
+        };
+        let weights = field.weights(handles, &Parameters::default()).map_err(sentence)?;
+        self.target_field = Some(field);
+        Ok(single(&weights.values).into())
+    }
+
+    /// The places that two creatures have in common: `{source, target}`, vertices of either.
+    pub fn landmarks(source: JsValue, target: JsValue) -> Reply {
+        let pairs = zoo::landmark_pairs(&creature(source)?, &creature(target)?);
+        let reply: JsValue = Object::new().into();
+        let side = |vertices: Vec<u32>| Uint32Array::from(vertices.as_slice());
+        put(&reply, "source", &side(pairs.iter().map(|pair| pair.1).collect()))?;
+        put(&reply, "target", &side(pairs.iter().map(|pair| pair.2).collect()))?;
+        Ok(reply)
+    }
+}
+
+impl Engine {
+    pub(super) fn open_target(&self) -> Result<&Sequence, JsValue> {
+        self.target.as_ref().ok_or_else(|| sentence("No target is open yet."))
+    }
+
+    fn replace_target(&mut self, target: Option<Sequence>) {
+        self.target = target;
+        self.target_field = None;
+        self.forget_pair();
+    }
+
+    /// Forgets what was prepared for the source and the target together.
+    pub(super) fn forget_pair(&mut self) {
+        self.proposer = None;
+        self.prepared = None;
+        self.moved = None;
+    }
+}
+
+fn creature(recipe: JsValue) -> Result<zoo::Creature, JsValue> {
+    let recipe: Recipe = parsed(recipe)?;
+    zoo::make(&recipe).ok_or_else(|| sentence(format!("There is no creature called “{}”.", recipe.name)))
+}

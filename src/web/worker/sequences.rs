@@ -1,0 +1,104 @@
+//! Sequences on their way to the page and back.
+
+use super::values::{Reply, coordinates, field, parsed, plain, points, put, sentence, triples};
+use crate::import::Clip;
+use crate::sequence::{Pose, Sequence, Sizes};
+use crate::warning::Warning;
+use glam::DVec3;
+use js_sys::{Float32Array, Float64Array, Uint32Array};
+use serde::{Deserialize, Serialize};
+use wasm_bindgen::prelude::*;
+
+/// The small fields of a sequence; the big ones go beside them as typed arrays.
+#[derive(Serialize)]
+struct Opened<'a> {
+    name: &'a str,
+    pose_names: Vec<&'a str>,
+    sizes: Sizes,
+    diagonal: f64,
+    clips: &'a [Clip],
+    clip: Option<usize>,
+    warnings: &'a [Warning],
+}
+
+/// The small fields of a sequence that comes back from the page.
+#[derive(Deserialize)]
+struct Kept {
+    name: String,
+    pose_names: Vec<String>,
+}
+
+/// The same sequence with every coordinate rounded to the `f32` that the page receives.
+pub fn rounded(sequence: &Sequence) -> Result<Sequence, JsValue> {
+    let round = |positions: &[DVec3]| positions.iter().map(|p| p.as_vec3().as_dvec3()).collect::<Vec<_>>();
+    let poses = sequence
+        .poses()
+        .iter()
+        .map(|pose| Pose { name: pose.name.clone(), time: pose.time, positions: round(&pose.positions) })
+        .collect();
+    let result = Sequence::new(sequence.name(), sequence.faces().to_vec(), round(sequence.reference()), poses)
+        .map_err(sentence)?;
+    match sequence.polygons() {
+        Some(polygons) => result.with_polygons(polygons.to_vec()).map_err(sentence),
+        None => Ok(result),
+    }
+}
+
+pub fn describe(sequence: &Sequence, clips: &[Clip], clip: Option<usize>, warnings: &[Warning]) -> Reply {
+    let reply = plain(&Opened {
+        name: sequence.name(),
+        pose_names: sequence.poses().iter().map(|pose| pose.name.as_str()).collect(),
+        sizes: sequence.sizes(),
+        diagonal: sequence.diagonal(),
+        clips,
+        clip,
+        warnings,
+    })?;
+    let times: Vec<f64> = sequence.poses().iter().map(|pose| pose.time).collect();
+    put(&reply, "times", &Float64Array::from(times.as_slice()))?;
+    put(&reply, "faces", &Uint32Array::from(sequence.faces().as_flattened()))?;
+    put(&reply, "reference", &Float32Array::from(coordinates(sequence.reference()).as_slice()))?;
+    let vertices = sequence.reference().len() as u32;
+    let poses = Float32Array::new_with_length(3 * vertices * sequence.poses().len() as u32);
+    for (number, pose) in (0u32..).zip(sequence.poses()) {
+        let place = 3 * vertices * number;
+        poses.subarray(place, place + 3 * vertices).copy_from(&coordinates(&pose.positions));
+    }
+    put(&reply, "poses", &poses)?;
+    if let Some(polygons) = sequence.polygons() {
+        put(&reply, "polygons", &Uint32Array::from(polygons))?;
+    }
+    Ok(reply)
+}
+
+/// A sequence that the page kept.
+pub fn kept_sequence(kept: JsValue) -> Result<Sequence, JsValue> {
+    let faces: Vec<[u32; 3]> = triples(&Uint32Array::from(field(&kept, "faces")?).to_vec());
+    let reference = points(&Float32Array::from(field(&kept, "reference")?).to_vec());
+    let positions = points(&Float32Array::from(field(&kept, "poses")?).to_vec());
+    let times = Float64Array::from(field(&kept, "times")?).to_vec();
+    let polygons = field(&kept, "polygons")?;
+    let Kept { name, pose_names } = parsed(kept)?;
+    let poses = positions
+        .chunks(reference.len().max(1))
+        .zip(pose_names.into_iter().zip(times))
+        .map(|(positions, (name, time))| Pose { name, time, positions: positions.to_vec() })
+        .collect();
+    let mut sequence = Sequence::new(name, faces, reference, poses).map_err(sentence)?;
+    if !polygons.is_undefined() {
+        sequence = sequence.with_polygons(Uint32Array::from(polygons).to_vec()).map_err(sentence)?;
+    }
+    Ok(sequence)
+}
+
+/// The target in poses of its own, at the times of the source's.
+pub fn moving(source: &Sequence, target: &Sequence, poses: Vec<Vec<DVec3>>) -> Result<Sequence, JsValue> {
+    let poses = source
+        .poses()
+        .iter()
+        .zip(poses)
+        .map(|(pose, positions)| Pose { name: pose.name.clone(), time: pose.time, positions })
+        .collect();
+    Sequence::new(target.name().to_owned(), target.faces().to_vec(), target.reference().to_vec(), poses)
+        .map_err(sentence)
+}

@@ -1,0 +1,208 @@
+//! Key points, a target, and how it moves.
+
+use crate::harness::{Backend, Page, Screen};
+use crate::opening::opened;
+use serde_json::Value;
+
+/// Seconds for the selection of key points and the rest of a transfer on a busy machine.
+const PATIENT: f64 = 60.0;
+const IDLE: &str = "!sinew.state().busy && sinew.state().drawn";
+
+fn step(page: &mut Page, name: &str) {
+    page.click(&format!("#step-{name}"));
+    page.wait_until(&format!("sinew.state().step === '{name}'"), 3.0);
+}
+
+/// The horse with its key points, and the camel with what is proposed for it.
+fn proposed(backend: Backend, screen: Screen) -> Page {
+    let mut page = opened(backend, screen, "#v1;zoo=horse;faces=3000;poses=8;k.points=8");
+    step(&mut page, "keypoints");
+    page.wait_until("sinew.state().points > 2 && !sinew.state().busy", PATIENT);
+    step(&mut page, "target");
+    page.click("#target-camel");
+    page.wait_until(&format!("sinew.state().moves && sinew.state().tally.missing === 0 && {IDLE}"), PATIENT);
+    page
+}
+
+fn a_camel_walks_like_a_horse(backend: Backend) {
+    let mut page = proposed(backend, Screen::Small);
+    let state = page.state();
+    let points = state["points"].as_u64().unwrap_or(0);
+    assert_eq!(points, 8, "{state}");
+    assert!(state["pointError"].as_f64().is_some_and(|error| error > 0.0 && error < 0.06), "{state}");
+    assert_eq!(state["tally"]["proposed"], points, "{state}");
+    assert_eq!(state["error"], Value::Null, "{state}");
+    page.click("#target-point-1-accept");
+    page.wait_until(&format!("sinew.state().tally.placed === 1 && {IDLE}"), PATIENT);
+    page.press("a");
+    page.wait_until(&format!("sinew.state().tally.placed === {points} && !sinew.state().busy"), PATIENT);
+    step(&mut page, "transfer");
+    page.wait_until("sinew.state().playing && !sinew.state().busy", 5.0);
+    let before = page.picture_of("#second canvas", "transfer");
+    assert!(before.colours() > 100, "the target's picture has only {} colours", before.colours());
+    let mut changed = 0.0;
+    for _ in 0..10 {
+        page.rest(0.4);
+        changed = page.picture_of("#second canvas", "transfer-later").difference(&before, 8);
+        if changed > 0.002 {
+            break;
+        }
+    }
+    assert!(changed > 0.002, "only {:.3} % of the target's picture changed", 100.0 * changed);
+    for method in ["direct", "relative", "bones"] {
+        page.evaluate(&format!("document.querySelector('#control-variant-{method}').click()"));
+        page.wait_until(&format!("sinew.state().moves?.method === '{method}' && !sinew.state().busy"), PATIENT);
+        assert_eq!(page.state()["error"], Value::Null, "{method}");
+    }
+    step(&mut page, "export");
+    for form in ["exact", "light"] {
+        let file = page.evaluate_within(
+            &format!(
+                "sinew.app.transfer.file('{form}').then(async ({{ blob, error }}) => [blob.size, error,
+                new TextDecoder().decode(new Uint8Array(await blob.arrayBuffer()).subarray(0, 4))])"
+            ),
+            PATIENT,
+        );
+        assert!(file[0].as_f64().is_some_and(|size| size > 10_000.0), "{form}: {file}");
+        assert!(file[1].as_f64().is_some_and(|error| (0.0..0.2).contains(&error)), "{form}: {file}");
+        assert_eq!(file[2], "glTF", "{form}");
+    }
+    page.wait_until("document.querySelector('#export-light').innerText.includes('kB')", 10.0);
+}
+
+#[test]
+#[ignore = "drives the built page in Chromium: run by `cargo xtask test`"]
+fn a_camel_walks_like_a_horse_on_webgpu() {
+    a_camel_walks_like_a_horse(Backend::WebGpu);
+}
+
+#[test]
+#[ignore = "drives the built page in Chromium: run by `cargo xtask test`"]
+fn a_camel_walks_like_a_horse_on_webgl2() {
+    a_camel_walks_like_a_horse(Backend::WebGl2);
+}
+
+/// Everything that undo brings back.
+const DOCUMENT: &str = "JSON.stringify([sinew.app.doc.points, sinew.app.doc.count, sinew.app.doc.method,
+    sinew.app.doc.search, sinew.app.doc.target?.sequence.name, sinew.app.doc.wanted])";
+
+#[test]
+#[ignore = "drives the built page in Chromium: run by `cargo xtask test`"]
+fn everything_is_undone_and_redone() {
+    let mut page = proposed(Backend::WebGl2, Screen::Small);
+    let acts = [
+        "sinew.app.target.accept(0)",
+        "sinew.app.target.remove(1)",
+        "sinew.app.keypoints.setCount(3)",
+        "sinew.app.transfer.setMethod('relative')",
+        "sinew.app.keypoints.remove(2)",
+        "void sinew.app.setParts(5)",
+        "sinew.app.target.close()",
+    ];
+    let mut states = vec![page.evaluate(DOCUMENT)];
+    for act in acts {
+        page.evaluate(act);
+        page.wait_until("!sinew.state().busy", PATIENT);
+        states.push(page.evaluate(DOCUMENT));
+    }
+    for pair in states.windows(2) {
+        assert_ne!(pair[0], pair[1]);
+    }
+    for before in states.iter().rev().skip(1) {
+        page.click("#undo");
+        page.wait_until("!sinew.state().busy", PATIENT);
+        assert_eq!(&page.evaluate(DOCUMENT), before);
+    }
+    page.wait_until("sinew.state().moves && !sinew.state().busy", PATIENT);
+    for after in states.iter().skip(1) {
+        page.click("#redo");
+        page.wait_until("!sinew.state().busy", PATIENT);
+        assert_eq!(&page.evaluate(DOCUMENT), after);
+    }
+}
+
+#[test]
+#[ignore = "drives the built page in Chromium: run by `cargo xtask test`"]
+fn a_point_is_dragged_and_the_motion_follows() {
+    let mut page = proposed(Backend::WebGl2, Screen::Small);
+    // A pin of the target that can be seen.
+    let seen = page.evaluate(
+        "(() => { const { second } = sinew.app, box = second.canvas.getBoundingClientRect();
+        const pins = second.pinPositions(); const i = pins.findIndex((p) => p.visible && p.x > 40 && p.y > 60);
+        return [i, box.x + pins[i].x, box.y + pins[i].y]; })()",
+    );
+    let [index, x, y] = [0, 1, 2].map(|i| seen[i].as_f64().unwrap_or(-1.0));
+    assert!(index >= 0.0, "no pin can be seen");
+    let vertex = format!("sinew.app.doc.points[{index}].target");
+    let before = page.evaluate(&vertex);
+    let undo = page.state()["undo"].as_u64().unwrap_or(0);
+    page.drag_from((x, y), (14.0, -12.0));
+    page.wait_until(&format!("sinew.app.doc.points[{index}].state === 'placed' && {IDLE}"), PATIENT);
+    assert_ne!(page.evaluate(&vertex), before, "the point did not move");
+    assert_eq!(page.state()["undo"], undo + 1, "a drag is one step back");
+    page.press_with_control("z");
+    page.wait_until("!sinew.state().busy", PATIENT);
+    assert_eq!(page.evaluate(&vertex), before, "Ctrl+Z brings it back");
+    let milliseconds = page.evaluate_within(
+        "(async () => { const { app } = sinew; app.held = true; const times = [];
+        const near = app.target.sequence.faces; const start = near.indexOf(app.doc.points[0].target);
+        for (let i = 0; i < 6; i++) {
+          app.target.place(0, near[(start - start % 3) + i % 3], 'drag');
+          await new Promise((resolve) => app.addEventListener('motion', resolve, { once: true }));
+          times.push(app.transfer.motion.took * 1000);
+        }
+        app.held = false; app.history.rest(); return times.sort((a, b) => a - b)[3]; })()",
+        PATIENT,
+    );
+    println!("the motion follows a dragged point after {milliseconds} ms");
+}
+
+#[test]
+#[ignore = "drives the built page in Chromium: run by `cargo xtask test`"]
+fn a_link_brings_the_pairs_back() {
+    let mut page = proposed(Backend::WebGl2, Screen::Small);
+    page.click("#target-point-2-accept");
+    page.wait_until("sinew.state().tally.placed === 1 && !sinew.state().busy", PATIENT);
+    page.evaluate("sinew.app.transfer.setMethod('direct'), 0");
+    step(&mut page, "transfer");
+    page.wait_until("sinew.state().moves?.method === 'direct' && !sinew.state().busy", PATIENT);
+    page.rest(0.8);
+    let pairs = "JSON.stringify(sinew.app.keypoints.used.map(({ source, target, state }) => [source, target, state]))";
+    let (hash, before) = (page.evaluate("location.hash"), page.evaluate(pairs));
+    page.go(&format!("?again{}", hash.as_str().unwrap_or_default()));
+    page.wait_until("location.search === '?again'", 10.0);
+    page.wait_until("sinew.ready && sinew.state().moves && !sinew.state().busy", PATIENT);
+    assert_eq!(page.evaluate(pairs), before, "{hash}");
+    let state = page.state();
+    assert_eq!((&state["step"], &state["moves"]["method"]), (&"transfer".into(), &"direct".into()), "{state}");
+    assert_eq!(state["target"]["name"], "camel");
+}
+
+#[test]
+#[ignore = "drives the built page in Chromium: run by `cargo xtask test`"]
+fn a_cancel_costs_one_step() {
+    let mut page = proposed(Backend::WebGl2, Screen::Small);
+    let before = page.evaluate(DOCUMENT);
+    page.evaluate("void sinew.app.keypoints.setParameter('literal', true)");
+    page.wait_until("sinew.state().busy?.done > 0", PATIENT);
+    page.evaluate("sinew.app.cancel()");
+    page.wait_until("!sinew.state().busy", PATIENT);
+    assert_eq!(page.evaluate(DOCUMENT), before);
+    page.evaluate("sinew.app.transfer.setMethod('relative')");
+    page.wait_until("sinew.state().moves?.method === 'relative' && !sinew.state().busy", PATIENT);
+}
+
+#[test]
+#[ignore = "drives the built page in Chromium: run by `cargo xtask test`"]
+fn the_gallery_opens_pairs_that_move() {
+    let mut page = opened(Backend::WebGl2, Screen::Small, "");
+    for (source, target) in [("snake", "hand"), ("person", "dinosaur"), ("horse", "camel")] {
+        page.evaluate(&format!("document.querySelector('#pair-{source}-{target}').click()"));
+        let open = format!("sinew.state().target?.name === '{target}' && sinew.state().source.name === '{source}'");
+        page.wait_until(&format!("{open} && sinew.state().moves && sinew.state().step === 'transfer'"), PATIENT);
+        let state = page.state();
+        assert_eq!((&state["error"], &state["tally"]["missing"]), (&Value::Null, &0.into()), "{state}");
+        page.rest(1.0);
+        page.screenshot(&format!("gallery-{source}-{target}"));
+    }
+}

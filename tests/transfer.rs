@@ -1,0 +1,258 @@
+//! Transfer against ground truth, and on input as it is.
+#![cfg(not(target_arch = "wasm32"))]
+
+#[path = "common/npz.rs"]
+mod npz;
+
+use glam::{DMat3, DVec3};
+use sinew::linalg::rigid_fit::Moments;
+use sinew::mesh::ball::unit_ball;
+use sinew::observer::Silent;
+use sinew::sequence::{Pose, Sequence};
+use sinew::transfer::{Method, Pair, Parameters, Prepared, Transfer, TransferError, transfer};
+use sinew::zoo::{self, Creature, Recipe};
+use std::collections::BTreeMap;
+
+fn creature(name: &str, faces: usize) -> Creature {
+    zoo::make(&Recipe { name: name.into(), faces, poses: 12, exact: false }).expect("a creature of that name")
+}
+
+fn by_default(source: &Sequence, target: &Sequence, pairs: &[Pair]) -> Transfer {
+    transfer(source, target, pairs, &Parameters::default(), &mut Silent).expect("a transfer")
+}
+
+fn pairs(a: &Creature, b: &Creature, count: usize) -> Vec<Pair> {
+    zoo::correspondences(a, b, count).into_iter().map(|(source, target)| Pair { source, target }).collect()
+}
+
+/// The first #V positions only, as one would open a target.
+fn still(sequence: &Sequence) -> Sequence {
+    Sequence::new(sequence.name(), sequence.faces().to_vec(), sequence.reference().to_vec(), Vec::new())
+        .expect("a mesh")
+}
+
+/// Mean distance from the truth over vertices and poses, the mean difference of each pose removed, in radii.
+fn error(target: &Sequence, found: &[Vec<DVec3>], truth: &[Pose]) -> f64 {
+    assert_eq!(found.len(), truth.len());
+    let (_, radius) = unit_ball(target.faces(), target.reference());
+    let mean = |found: &[DVec3], truth: &[DVec3]| {
+        let off: Vec<DVec3> = found.iter().zip(truth).map(|(a, b)| (*a - *b) / radius).collect();
+        let middle = off.iter().sum::<DVec3>() / off.len() as f64;
+        off.iter().map(|d| (*d - middle).length()).sum::<f64>() / off.len() as f64
+    };
+    found.iter().zip(truth).map(|(a, b)| mean(a, &b.positions)).sum::<f64>() / truth.len() as f64
+}
+
+fn turned(sequence: &Sequence, map: impl Fn(DVec3) -> DVec3) -> Sequence {
+    let all = |points: &[DVec3]| points.iter().map(|&p| map(p)).collect::<Vec<_>>();
+    let poses = sequence.poses().iter();
+    let poses = poses.map(|pose| Pose { positions: all(&pose.positions), ..pose.clone() }).collect();
+    Sequence::new(sequence.name(), sequence.faces().to_vec(), all(sequence.reference()), poses).expect("a sequence")
+}
+
+/// Far-apart vertices of a mesh, by straight distance.
+fn far_apart(points: &[DVec3], count: usize) -> Vec<u32> {
+    let mut chosen = vec![0];
+    let mut distance: Vec<f64> = points.iter().map(|p| p.distance(points[0])).collect();
+    while chosen.len() < count {
+        let next = (0..points.len()).max_by(|&a, &b| distance[a].total_cmp(&distance[b])).expect("a vertex");
+        chosen.push(next as u32);
+        distance.iter_mut().zip(points).for_each(|(d, p)| *d = d.min(p.distance(points[next])));
+    }
+    chosen
+}
+
+#[test]
+fn a_mesh_moves_like_itself() {
+    let person = creature("person", 4_000).sequence;
+    let pairs: Vec<Pair> =
+        far_apart(person.reference(), 8).into_iter().map(|v| Pair { source: v, target: v }).collect();
+    let result = by_default(&person, &still(&person), &pairs);
+    let found = error(&person, &result.poses(person.reference()), person.poses());
+    println!("itself {found:.4}, skin of the source {:.4}, {} bones", result.source_error, result.bones);
+    assert!(found < 0.006, "{found}");
+    assert!(result.warnings.is_empty());
+}
+
+/// Rotations of a creature's bones in a pose, from the vertices that follow hardly another bone, by the bones' names.
+fn rotations(creature: &Creature, pose: &[DVec3]) -> BTreeMap<String, DMat3> {
+    let mut moments = vec![(Moments::default(), 0); creature.parts.len()];
+    for (v, weights) in creature.weights.iter().enumerate() {
+        if let Some(&(bone, _)) = weights.iter().find(|w| w.1 > 0.98) {
+            moments[bone as usize].0.add(1.0, creature.sequence.reference()[v], pose[v]);
+            moments[bone as usize].1 += 1;
+        }
+    }
+    let named = creature.parts.iter().cloned().zip(moments).filter(|(_, m)| m.1 >= 30);
+    named.map(|(name, m)| (name, m.0.motion().rotation)).collect()
+}
+
+#[test]
+fn a_camel_walks_like_a_horse() {
+    // The camel's own gait is another one: what is known is how each of its bones must turn.
+    let (horse, camel) = (creature("horse", 8_000), creature("camel", 6_000));
+    let result = by_default(&horse.sequence, &still(&camel.sequence), &pairs(&horse, &camel, 14));
+    let angle = |a: &DMat3, b: &DMat3| {
+        let r = a.transpose() * *b;
+        (0.5 * (r.x_axis.x + r.y_axis.y + r.z_axis.z - 1.0)).clamp(-1.0, 1.0).acos().to_degrees()
+    };
+    let (mut off, mut moved) = (Vec::new(), Vec::new());
+    for (pose, found) in horse.sequence.poses().iter().zip(result.poses(camel.sequence.reference())) {
+        let truth = rotations(&horse, &pose.positions);
+        for (name, rotation) in rotations(&camel, &found) {
+            let Some(truth) = truth.get(&name) else { continue };
+            off.push(angle(truth, &rotation));
+            moved.push(angle(truth, &DMat3::IDENTITY));
+        }
+    }
+    off.sort_by(f64::total_cmp);
+    let mean = |angles: &[f64]| angles.iter().sum::<f64>() / angles.len() as f64;
+    let (found, turning) = (mean(&off), mean(&moved));
+    println!(
+        "bones off by {found:.2}° of {turning:.2}°, median {:.2}°, worst {:.1}°",
+        off[off.len() / 2],
+        off[off.len() - 1]
+    );
+    assert!(found < 0.25 * turning, "{found} of {turning}");
+}
+
+#[test]
+fn size_place_and_up_axis_do_not_matter() {
+    let person = creature("person", 3_000).sequence;
+    let z_up = |p: DVec3| 37.0 * DVec3::new(p.x, -p.z, p.y) + DVec3::new(500.0, 20.0, -3.0);
+    let target = turned(&person, z_up);
+    let pairs: Vec<Pair> =
+        far_apart(person.reference(), 6).into_iter().map(|v| Pair { source: v, target: v }).collect();
+    let result = by_default(&person, &still(&target), &pairs);
+    let found = error(&target, &result.poses(target.reference()), target.poses());
+    assert!(found < 0.008, "{found}");
+    let expected = DMat3::from_cols(DVec3::X, DVec3::Z, DVec3::NEG_Y);
+    assert_eq!(result.alignment.turn, expected);
+    // The result lies in the target's own frame: also where it stands.
+    let middle = |points: &[DVec3]| points.iter().sum::<DVec3>() / points.len() as f64;
+    for (found, truth) in result.poses(target.reference()).iter().zip(target.poses()) {
+        assert!(middle(found).distance(middle(&truth.positions)) < 0.02 * 37.0);
+    }
+}
+
+#[test]
+fn one_pair_is_enough_to_move() {
+    let (horse, camel) = (creature("horse", 3_000), creature("camel", 3_000));
+    for count in 1..4 {
+        let result = by_default(&horse.sequence, &still(&camel.sequence), &pairs(&horse, &camel, count));
+        assert!(result.warnings.iter().any(|w| w.code == "few-pairs"));
+        let (_, radius) = unit_ball(camel.sequence.faces(), camel.sequence.reference());
+        let poses = result.poses(camel.sequence.reference());
+        for (p, q) in poses.iter().flat_map(|pose| pose.iter().zip(camel.sequence.reference())) {
+            assert!(p.is_finite() && p.distance(*q) < 2.0 * radius);
+        }
+    }
+}
+
+#[test]
+fn shares_sum_to_one_and_forms_of_the_skin_agree() {
+    let (horse, camel) = (creature("horse", 3_000), creature("camel", 3_000));
+    let skin = by_default(&horse.sequence, &still(&camel.sequence), &pairs(&horse, &camel, 10)).skin;
+    let most = skin.most_influences();
+    assert!(most <= 8);
+    let (indices, shares) = skin.influences(most);
+    let dense = skin.dense();
+    let matrices = skin.matrices();
+    assert_eq!(matrices.len(), 12 * 12 * skin.handles.len());
+    for (v, row) in skin.rows.iter().enumerate() {
+        assert!((row.iter().map(|entry| entry.1).sum::<f64>() - 1.0).abs() < 1e-12);
+        for k in 0..most {
+            let handle = usize::from(indices[v * most + k]);
+            let share = f64::from(shares[v * most + k]);
+            assert!(share == 0.0 || (share - dense[v * skin.handles.len() + handle]).abs() < 1e-6);
+        }
+    }
+    assert_eq!(skin.pose(camel.sequence.reference(), 999), camel.sequence.reference());
+}
+
+#[test]
+fn following_a_dragged_point_stays_close_to_a_fresh_start() {
+    let (horse, camel) = (creature("horse", 6_000), creature("camel", 6_000));
+    let all = pairs(&horse, &camel, 12);
+    let mut moved = all.clone();
+    moved[5].target = camel.sequence.faces()[0][0];
+    if moved.iter().enumerate().any(|(i, p)| i != 5 && p.target == moved[5].target) {
+        moved[5].target = all[5].target;
+    }
+    let target = still(&camel.sequence);
+    let mut prepared = Prepared::new(&horse.sequence, &target, &Parameters::default(), &mut Silent).expect("prepared");
+    prepared.transfer(&moved, &mut Silent).expect("a transfer");
+    let followed = prepared.follow(&all, &mut Silent).expect("a transfer");
+    let fresh = prepared.transfer(&all, &mut Silent).expect("a transfer");
+    let as_poses = |transfer: &Transfer| -> Vec<Pose> {
+        let poses = transfer.poses(target.reference()).into_iter();
+        poses.map(|positions| Pose { name: String::new(), time: 0.0, positions }).collect()
+    };
+    let apart = error(&target, &followed.poses(target.reference()), &as_poses(&fresh));
+    println!("{apart:.4} after {:?}", followed.seconds);
+    assert!(apart < 0.02, "{apart}");
+}
+
+#[test]
+fn seams_stay_closed_and_loose_vertices_stay_finite() {
+    let person = creature("person", 2_000).sequence;
+    // Every face with vertices of its own, and a vertex far away that no face uses.
+    let split = |points: &[DVec3]| -> Vec<DVec3> {
+        let mut all: Vec<DVec3> = person.faces().iter().flatten().map(|&v| points[v as usize]).collect();
+        all.push(DVec3::splat(1e4));
+        all
+    };
+    let faces: Vec<[u32; 3]> = (0..person.faces().len() as u32).map(|f| [3 * f, 3 * f + 1, 3 * f + 2]).collect();
+    let target = Sequence::new("split", faces, split(person.reference()), Vec::new()).expect("a mesh");
+    let corner = |v: u32| person.faces().iter().flatten().position(|&u| u == v).expect("a corner") as u32;
+    let pairs: Vec<Pair> =
+        far_apart(person.reference(), 6).into_iter().map(|v| Pair { source: v, target: corner(v) }).collect();
+    let result = by_default(&person, &target, &pairs);
+    for pose in result.poses(target.reference()) {
+        assert!(pose.iter().all(|p| p.is_finite()));
+        let mut at = vec![None; person.reference().len()];
+        for (&v, p) in person.faces().iter().flatten().zip(&pose) {
+            assert_eq!(*at[v as usize].get_or_insert(*p), *p);
+        }
+    }
+}
+
+#[test]
+fn what_cannot_be_used_is_said_in_words() {
+    let person = creature("person", 1_000).sequence;
+    let run = |pairs: &[Pair]| transfer(&person, &still(&person), pairs, &Parameters::default(), &mut Silent);
+    let pair = |source, target| Pair { source, target };
+    assert_eq!(run(&[]).expect_err("an error"), TransferError::NoPairs);
+    let error = run(&[pair(0, 0), pair(1, 99_999)]).expect_err("an error");
+    assert!(error.to_string().starts_with("pair 1 names vertex 99999 of the target"), "{error}");
+    let error = run(&[pair(0, 0), pair(0, 5)]).expect_err("an error");
+    assert_eq!(error, TransferError::SamePlace { first: 0, second: 1, side: "source" });
+    let error = run(&[pair(0, 5), pair(1, 5)]).expect_err("an error");
+    assert_eq!(error, TransferError::SamePlace { first: 0, second: 1, side: "target" });
+    let repeated = run(&[pair(0, 0), pair(9, 9), pair(90, 90), pair(200, 200), pair(9, 9)]).expect("a transfer");
+    assert!(repeated.warnings.iter().any(|w| w.code == "repeated-pair"));
+    let points = Sequence::new("points", Vec::new(), vec![DVec3::ZERO; 4], Vec::new()).expect("points");
+    let error = transfer(&person, &points, &[pair(0, 0)], &Parameters::default(), &mut Silent);
+    assert_eq!(error.expect_err("an error"), TransferError::NoFaces { side: "target" });
+    let stop =
+        transfer(&person, &still(&person), &[pair(0, 0)], &Parameters::default(), &mut |_: &'static str, _: f64| false);
+    assert_eq!(stop.expect_err("an error"), TransferError::Cancelled);
+}
+
+#[test]
+fn bodies_of_one_topology_move_as_they_truly_do() {
+    let Some(data) = npz::data("bodies whose true motion is known") else { return };
+    let body = |name: &str| npz::sequence(&data.join(format!("anny/low_shared_{name}.npz")));
+    let man = body("man_lean");
+    for (name, few, many) in [("woman", 0.0125, 0.0105), ("heavy_man", 0.0130, 0.0125)] {
+        let target = body(name);
+        for (count, bound) in [(6, few), (14, many)] {
+            let points = far_apart(man.reference(), count);
+            let pairs: Vec<Pair> = points.into_iter().map(|v| Pair { source: v, target: v }).collect();
+            let result = by_default(&man, &still(&target), &pairs);
+            let found = error(&target, &result.poses(target.reference()), target.poses());
+            println!("{name}, {count} pairs: {found:.4}");
+            assert!(found < bound, "{name}, {count} pairs: {found}");
+        }
+    }
+}

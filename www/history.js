@@ -1,0 +1,61 @@
+/**
+ * Undo and redo: a line of snapshots of one small immutable state. Big things in a snapshot (a mesh, a result) are
+ * only referred to.
+ */
+
+const MOST = 200;
+
+/** @template {object} State */
+export class History {
+  /** @param {State} now */
+  constructor(now) {
+    this.now = now;
+    this.past = [];
+    this.future = [];
+    this.mark = null;
+  }
+
+  /**
+   * Goes on to another state.
+   * @param {Partial<State>} patch
+   * @param {string|null} mark steps in a row with the same mark, such as those of one drag, are one step back
+   */
+  edit(patch, mark = null) {
+    if (mark === null || mark !== this.mark) this.past.push(this.now);
+    if (this.past.length > MOST) this.past.shift();
+    this.mark = mark;
+    this.future = [];
+    this.now = Object.freeze({ ...this.now, ...patch });
+  }
+
+  /** Corrects the state that is in force, without a step back. @param {Partial<State>} patch */
+  amend(patch) {
+    this.now = Object.freeze({ ...this.now, ...patch });
+  }
+
+  /** Ends a row of steps that are one step back. */
+  rest() {
+    this.mark = null;
+  }
+
+  /** Forgets everything but a state that is in force from now on. @param {State} now */
+  restart(now) {
+    Object.assign(this, { now: Object.freeze(now), past: [], future: [], mark: null });
+  }
+
+  undo() {
+    return this.#go(this.past, this.future);
+  }
+
+  redo() {
+    return this.#go(this.future, this.past);
+  }
+
+  #go(from, to) {
+    if (!from.length) return false;
+    to.push(this.now);
+    this.now = from.pop();
+    this.mark = null;
+    return true;
+  }
+}

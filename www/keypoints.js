@@ -1,0 +1,212 @@
+/**
+ * The key points of the source: finding them, using fewer or more of them, moving them by hand, and what follows from
+ * those in use: their weights, the groups, the error.
+ */
+import { stepNamed } from './steps/index.js';
+import { BEGINNING } from './steps/search-parameters.js';
+import { latest } from './work.js';
+
+/** More than this many make neither a better motion nor a readable picture. */
+export const MOST_POINTS = 60;
+
+/**
+ * @typedef {object} Point a key point and what is known of its place on the target; never changed, only replaced
+ * @property {number} source vertex
+ * @property {number|null} target vertex
+ * @property {'missing'|'none'|'proposed'|'placed'} state `none`: taken away by hand, so not to be proposed
+ * @property {number} confidence of a proposal
+ */
+
+/** @returns {Point} */
+export const fresh = (source) => Object.freeze({ source, target: null, state: 'missing', confidence: 0 });
+
+export class KeyPoints {
+  /** @param {import('./app.js').App} app */
+  constructor(app) {
+    this.app = app;
+    /** What follows from the points in use: `{points, weights, groups, error, energies}`. */
+    this.fitted = null;
+    /** The step of the selection that is looked at. */
+    this.shown = 0;
+    /** Whether the next click on the source adds a point. */
+    this.adding = false;
+    this.fit = latest(() => this.#fit());
+  }
+
+  /** The points in use. @returns {Point[]} */
+  get used() {
+    const { points, count } = this.app.doc;
+    return points.slice(0, count);
+  }
+
+  /** The parameters in force. */
+  get parameters() {
+    return { ...this.app.about.keypoints, ...BEGINNING, ...this.app.doc.search };
+  }
+
+  /** Whether the points in use are the first of those that the selection chose. */
+  get untouched() {
+    const { run } = this.app.doc;
+    return Boolean(run) && this.used.every(({ source }, i) => source === run.key_points[i]);
+  }
+
+  /** The error with the points in use; undefined while it is not known. */
+  get error() {
+    const { run } = this.app.doc;
+    return this.untouched ? run.errors[this.used.length - 1] : this.#current?.error;
+  }
+
+  /** What follows from the points in use, if it is known already. */
+  get current() {
+    return this.#current;
+  }
+
+  get #current() {
+    const { used, fitted } = this;
+    return fitted && fitted.points.length === used.length && used.every(({ source }, i) => source === fitted.points[i]) ? fitted : null;
+  }
+
+  get hasMotion() {
+    return (this.app.sequence?.sizes.poses ?? 0) > 0;
+  }
+
+  /** Finds them if there are none. */
+  begin() {
+    const { app } = this;
+    const searching = app.work.jobs.some(({ lane }) => lane === 'search');
+    if (app.sequence && !app.opening && !app.doc.points.length && this.hasMotion && !searching) this.find();
+  }
+
+  /** Finds key points with the parameters in force. A step back goes to what was before the parameters changed. */
+  async find() {
+    const { app } = this;
+    const { search } = app.doc;
+    const run = await app.work.run('search', 'finding key points', (progress) =>
+      app.engine.call('keypoints', { parameters: this.parameters }, { progress }));
+    if (app.doc.search !== search) return;
+    if (!run) {
+      if (app.doc.run) app.amend({ search: app.doc.run.search });
+      return;
+    }
+    run.search = search;
+    this.shown = Math.max(0, run.steps.length - 1);
+    const known = new Map(app.doc.points.map((point) => [point.source, point]));
+    const points = Array.from(run.key_points, (vertex) => known.get(vertex) ?? fresh(vertex));
+    app.amend({ run, points, count: points.length });
+  }
+
+  /** @param {string} name of a parameter @param {any} value null: the engine's default */
+  setParameter(name, value) {
+    const { app } = this;
+    const { [name]: _, ...search } = app.doc.search;
+    if (value != null && value !== app.about.keypoints[name]) search[name] = value;
+    // A bound or a rule takes the place of a number.
+    if (name === 'error' || name === 'stop') search.points = null;
+    app.edit({ search });
+    return this.find();
+  }
+
+  /** When to stop: `count`, or a rule of the engine's. */
+  setStop(rule) {
+    if (rule !== 'count') return this.setParameter('stop', rule);
+    const { stop, points, ...search } = this.app.doc.search;
+    this.app.edit({ search });
+    return this.find();
+  }
+
+  resetParameters() {
+    this.app.edit({ search: {} });
+    return this.find();
+  }
+
+  /** Uses more or fewer points; more than there are have to be found first. */
+  setCount(wanted) {
+    const { app } = this;
+    const count = Math.min(Math.max(1, wanted), MOST_POINTS);
+    if (count === app.doc.count) return undefined;
+    if (count <= app.doc.points.length) {
+      app.edit({ count }, 'count');
+      return undefined;
+    }
+    app.edit({ search: { ...app.doc.search, points: count } }, 'count');
+    return this.find();
+  }
+
+  /** Whether a vertex is a key point already. */
+  has(vertex) {
+    return this.app.doc.points.some(({ source }) => source === vertex);
+  }
+
+  /** Moves a point; its place on the target is asked anew. */
+  move(index, vertex, mark = null) {
+    const { app } = this;
+    if (this.has(vertex)) return;
+    app.edit({ points: app.doc.points.with(index, fresh(vertex)) }, mark);
+  }
+
+  /** Adds a point after those in use and selects it. */
+  add(vertex) {
+    const { app } = this;
+    const { points, count } = app.doc;
+    if (count >= MOST_POINTS) return;
+    const others = points.filter(({ source }, i) => i < count || source !== vertex);
+    if (others.slice(0, count).some(({ source }) => source === vertex)) return;
+    app.edit({ points: others.toSpliced(count, 0, fresh(vertex)), count: count + 1 });
+    app.select(count);
+  }
+
+  remove(index) {
+    const { app } = this;
+    const { points, count } = app.doc;
+    if (index < 0 || index >= count) return;
+    app.edit({ points: points.toSpliced(index, 1), count: count - 1 });
+  }
+
+  /** Goes back to the points as they were found. */
+  restore() {
+    const { app } = this;
+    const { run, points: now } = app.doc;
+    const known = new Map(now.map((point) => [point.source, point]));
+    const points = Array.from(run.key_points, (vertex) => known.get(vertex) ?? fresh(vertex));
+    app.edit({ points, count: points.length });
+  }
+
+  show(step) {
+    this.shown = Math.min(Math.max(0, step), Math.max(0, (this.app.doc.run?.steps.length ?? 0) - 1));
+    this.app.changed('view');
+    this.app.paint();
+  }
+
+  setAdding(on) {
+    this.adding = on;
+    this.app.changed('selected');
+  }
+
+  /** Another source: nothing of this holds any more. */
+  forget() {
+    this.fitted = null;
+    this.adding = false;
+    this.app.changed('points');
+    if (stepNamed(this.app.step).points) queueMicrotask(() => this.begin());
+  }
+
+  react(before, after) {
+    if (before.points === after.points && before.count === after.count) return;
+    this.app.changed('points');
+    if (!this.#current) this.fit();
+  }
+
+  async #fit() {
+    const { app } = this;
+    const points = this.used.map(({ source }) => source);
+    if (!points.length) return;
+    const { run } = app.doc;
+    const known = run && this.untouched && points.length === run.key_points.length;
+    const answer = known ? run : await app.work.run('points', 'weights', () => app.engine.call('fit', { points, parameters: this.parameters }));
+    if (!answer) return;
+    const { weights, groups, energies } = answer;
+    this.fitted = { points, weights, groups, energies, error: known ? run.errors.at(-1) : answer.error };
+    app.changed('points');
+    app.paint();
+  }
+}

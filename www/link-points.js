@@ -1,0 +1,69 @@
+/**
+ * Key points and their places in a link: `points=12,407,…` are vertices of the source, `pairs=33,~81,,…` those of the
+ * target in the same order, with `~` before one that is only proposed and nothing where there is none.
+ */
+import { fresh, MOST_POINTS } from './keypoints.js';
+
+const PROPOSED = '~';
+const AWAY = '-';
+const RECIPE = ['faces', 'poses', 'exact'];
+
+/** Writes the state of key points, target and transfer into the fields of a link. */
+export function writePoints(app, fields) {
+  const { doc, source, about, selected } = app;
+  for (const [name, value] of Object.entries(doc.search)) fields[`k.${name}`] = JSON.stringify(value);
+  if (doc.method) fields.method = doc.method;
+  const target = doc.target?.source;
+  if (target?.kind === 'zoo') {
+    fields.target = target.recipe.name;
+    for (const name of RECIPE) if (target.recipe[name] !== about.recipe[name]) fields[`target.${name}`] = target.recipe[name];
+  }
+  // Vertex numbers mean nothing on another mesh than this.
+  if (!doc.count || source?.kind === 'files') return;
+  const used = doc.points.slice(0, doc.count);
+  fields.points = used.map((point) => point.source).join();
+  if (target?.kind === 'zoo') fields.pairs = used.map(written).join();
+  if (selected >= 0) fields.point = selected + 1;
+}
+
+function written({ target, state }) {
+  if (state === 'none') return AWAY;
+  return target == null ? '' : `${state === 'proposed' ? PROPOSED : ''}${target}`;
+}
+
+/** What {@link writePoints} wrote, as far as it makes sense. @returns {{points: import('./keypoints.js').Point[], selected: number}} */
+export function placesOf(fields) {
+  const sources = (fields.points ?? '').split(',').filter(Boolean).map(Number);
+  const valid = sources.every((vertex) => Number.isInteger(vertex) && vertex >= 0) && new Set(sources).size === sources.length;
+  if (!valid) return { points: [], selected: -1 };
+  const pairs = (fields.pairs ?? '').split(',');
+  return {
+    points: sources.slice(0, MOST_POINTS).map((vertex, i) => read(vertex, pairs[i] ?? '')),
+    selected: Number.isInteger(Number(fields.point)) ? Number(fields.point) - 1 : -1,
+  };
+}
+
+function read(vertex, text) {
+  if (text === AWAY) return Object.freeze({ ...fresh(vertex), state: 'none' });
+  const proposed = text.startsWith(PROPOSED);
+  const target = Number(text.slice(proposed ? 1 : 0));
+  if (!text || !Number.isInteger(target) || target < 0) return fresh(vertex);
+  return Object.freeze({ source: vertex, target, state: proposed ? 'proposed' : 'placed', confidence: proposed ? 0 : 1 });
+}
+
+/**
+ * Puts the points of a link into the page, and opens the target that it names.
+ * @param {object|null} recipe of the target
+ */
+export async function goToPoints(app, { points, selected }, recipe) {
+  const { vertices } = app.sequence.sizes;
+  const known = points.filter(({ source }) => source < vertices);
+  if (known.length) app.amend({ points: known.map(({ source }) => fresh(source)), count: known.length });
+  if (recipe) {
+    // The target is open first, so that nothing has to be proposed that the link knows.
+    const places = (size) => known.map((point) => (point.target < size ? point : fresh(point.source)));
+    if (!(await app.target.openCreature(recipe, known.length ? places : undefined))) return;
+    app.history.restart(app.doc);
+  }
+  if (known.length && selected >= 0) app.select(selected);
+}

@@ -1,0 +1,85 @@
+/** The step Target: another figure, and where the key points lie on it. */
+import { facts, fold } from '../controls.js';
+import { h, show } from '../dom.js';
+import { chosen } from '../files.js';
+import { count, title } from '../format.js';
+import { lesson } from '../lesson.js';
+import { gallery } from './gallery.js';
+import { pointList } from './point-list.js';
+import { PAIR_VIEWS } from './point-views.js';
+import { ACCEPT } from './source.js';
+import { warnings } from './warnings.js';
+
+export const targetStep = {
+  id: 'target',
+  title: 'Target',
+  views: PAIR_VIEWS,
+  view: 'points',
+  points: true,
+  pair: true,
+  enter: (app) => app.keypoints.begin(),
+  summary: ({ target }) => (target.sequence ? nameOf(target) : ''),
+  build,
+};
+
+/** @param {import('../app.js').App} app */
+function build(app) {
+  const now = h('div', { class: 'stack' });
+  const pairs = h('div');
+  const list = pointList(app, 'target');
+  const acceptAll = h('button', { type: 'button', class: 'button', title: 'Accept all proposals (A)', on: { click: () => app.target.acceptAll() } }, 'Accept all');
+  const again = h('button', { type: 'button', class: 'text-button', on: { click: () => app.target.proposeAgain() } }, 'Propose again');
+  const words = h('p', { class: 'small faint' });
+  const tally = h('p', { class: 'small number' });
+  show(pairs, h('h3', {}, 'Points'), words, tally, h('div', { class: 'actions first' }, acceptAll, again), list);
+  const creatures = h('div', { class: 'chips' });
+  const update = () => {
+    const { sequence } = app.target;
+    pairs.hidden = !sequence || !app.doc.count;
+    now.hidden = !sequence;
+    if (sequence) {
+      show(now,
+        h('div', { class: 'row' }, h('p', { class: 'name' }, nameOf(app.target)),
+          h('button', { type: 'button', class: 'text-button', on: { click: () => app.target.close() } }, 'Put away')),
+        facts([['Vertices', count(sequence.sizes.vertices)], ['Faces', count(sequence.sizes.faces)]]),
+        ...warnings(app, sequence.warnings, app.second));
+    }
+    const { placed, proposed, missing } = app.target.tally;
+    tally.textContent = [placed && `${placed} placed`, proposed && `${proposed} proposed`, missing && `${missing} missing`].filter(Boolean).join(' · ');
+    words.textContent = missing + proposed === 0 ? 'Every point has its place. Drag one to move it: the motion follows.'
+      : 'Click on the target to place a point, drag to move it. What is proposed is right or wrong: accept it, or drag it.';
+    acceptAll.hidden = !proposed;
+    again.hidden = placed === app.doc.count;
+  };
+  const choose = () => show(creatures, ...app.about.creatures.map((name) =>
+    h('button', { type: 'button', class: 'chip-button', 'aria-pressed': String(app.doc.target?.source.recipe?.name === name), id: `target-${name}`,
+      on: { click: () => app.target.openCreature({ name }) } }, title(name))));
+  app.on('doc target source', update);
+  app.on('target source', choose);
+  update();
+  choose();
+  return h('div', { class: 'step' }, h('h2', {}, 'Target'),
+    h('p', { class: 'small faint' }, 'A second figure that is to move like the first. It needs no skeleton and no animation.'),
+    now, pairs,
+    h('h3', {}, 'Creatures'), creatures,
+    h('h3', {}, 'Your own'), fileButton(app),
+    h('p', { class: 'small faint' }, 'Or drop it anywhere while this step is open.'),
+    h('h3', {}, 'Made for each other'), gallery(app),
+    fold('How it works', { load: () => lesson('target') }));
+}
+
+function fileButton(app) {
+  const input = h('input', { type: 'file', multiple: true, accept: ACCEPT, class: 'hidden', id: 'target-files', on: {
+    change: () => {
+      if (input.files.length) app.target.openFiles(chosen(input.files));
+      input.value = '';
+    },
+  } });
+  return h('div', { class: 'file' }, input, h('label', { for: 'target-files', class: 'button' }, 'Open a target'));
+}
+
+/** A creature has a name, a file its own. */
+export const nameOf = ({ app: { doc }, sequence }) =>
+  (doc.target.source.kind === 'zoo' ? title(sequence.name) : sequence.name.replace(/\.(glb|gltf|obj|off|ply)$/i, ''));
+
+export const describeTarget = (app) => (app.doc.target ? nameOf(app.target) : plural(0, 'target'));

@@ -1,0 +1,70 @@
+/** The step Transfer: the target moves. How, with what numbers. */
+import { choice, facts, fold } from '../controls.js';
+import { h, show } from '../dom.js';
+import { count, duration, plural } from '../format.js';
+import { lesson } from '../lesson.js';
+import { METHODS } from './methods.js';
+import { PAIR_VIEWS } from './point-views.js';
+import { warnings } from './warnings.js';
+
+export const transferStep = {
+  id: 'transfer',
+  title: 'Transfer',
+  views: PAIR_VIEWS,
+  view: 'points',
+  points: true,
+  pair: true,
+  enter(app) {
+    app.keypoints.begin();
+    app.play();
+  },
+  summary: ({ transfer: { motion } }) => (motion ? plural(motion.pairs, 'pair') : ''),
+  build,
+};
+
+/** @param {import('../app.js').App} app */
+function build(app) {
+  const words = h('p', { class: 'small faint' });
+  const go = h('button', { type: 'button', class: 'button', on: { click: () => app.setStep(app.doc.count ? 'target' : 'keypoints') } });
+  const method = choice('Variant', METHODS, null, (value) => app.transfer.setMethod(value), 'stacked');
+  const about = h('p', { class: 'small faint' });
+  const numbers = h('div');
+  const noticed = h('div', { class: 'stack' });
+  const variants = h('div', {}, h('h3', {}, 'Variant'), method, about);
+  const update = () => {
+    const { transfer: { motion, method: name, pairs }, doc } = app;
+    words.textContent = introduction(app);
+    go.hidden = Boolean(motion) || pairs.length > 0;
+    go.textContent = doc.count ? 'Choose a target' : 'Find key points';
+    variants.hidden = !doc.target || !doc.count;
+    const chosen = method.querySelector(`[value="${name}"]`);
+    if (chosen) chosen.checked = true;
+    about.textContent = METHODS.find(([id]) => id === name)?.[2] ?? '';
+    show(numbers, motion && motionFacts(app));
+    show(noticed, ...warnings(app, motion?.warnings, app.second));
+  };
+  app.on('doc motion target source', update);
+  update();
+  return h('div', { class: 'step' }, h('h2', {}, 'Transfer'), words, go, numbers, noticed, variants,
+    fold('How it works', { load: () => lesson('transfer') }));
+}
+
+function introduction(app) {
+  const { transfer, doc, target } = app;
+  if (!app.keypoints.hasMotion) return 'The source has a single pose: there is no motion to hand on.';
+  if (!doc.target) return 'Choose a target, and it moves like the source.';
+  if (!transfer.pairs.length) return 'Place a point on the target, and it begins to move.';
+  const { proposed } = target.tally;
+  return proposed ? `It moves like the source. ${plural(proposed, 'point')} of it ${proposed === 1 ? 'is' : 'are'} only proposed.`
+    : 'It moves like the source. Drag a point on it, and the motion follows.';
+}
+
+function motionFacts({ transfer: { motion }, target: { sequence }, sequence: source }) {
+  return facts([
+    ['Pairs', String(motion.pairs)],
+    motion.bones > 0 && ['Bones', String(motion.bones), 'Near-rigid pieces of the source that were found in its motion'],
+    ['Vertices', count(sequence.sizes.vertices)],
+    ['Poses', count(source.sizes.poses)],
+    ['Computed in', duration(motion.took), motion.seconds.map(([name, value]) => `${name}: ${Math.round(1000 * value)} ms`).join('\n')],
+  ]);
+}

@@ -1,0 +1,195 @@
+/** The target: the second figure, and where the key points lie on it. */
+import { collect } from './files.js';
+import { fresh } from './keypoints.js';
+import { latest } from './work.js';
+
+/**
+ * @typedef {object} Opened
+ * @property {{kind: 'zoo', recipe: object}|{kind: 'files', files: {name: string, blob: Blob}[], options: object}} source
+ * @property {object} sequence
+ */
+
+export class Target {
+  /** @param {import('./app.js').App} app */
+  constructor(app) {
+    this.app = app;
+    /** The point whose place is most worth a click; −1: none. */
+    this.next = -1;
+    /** The sequence that the engine knows. */
+    this.known = null;
+    this.proposing = latest(() => this.#propose());
+    /** The weights of the points on the target, once they were looked at: `{points, targets, weights}`. */
+    this.field = null;
+    this.weighing = latest(() => this.#weigh());
+  }
+
+  get sequence() {
+    return this.app.doc.target?.sequence ?? null;
+  }
+
+  /** @param {(vertices: number) => import('./keypoints.js').Point[]} [places] the points, where they are known */
+  openCreature(recipe, places) {
+    const source = { kind: 'zoo', recipe: { ...this.app.about.recipe, ...recipe } };
+    return this.#open(source, async () => ({ recipe: source.recipe }), places);
+  }
+
+  /** @param {{name: string, blob: Blob}[]} files */
+  openFiles(files, options = {}) {
+    const source = { kind: 'files', files, options: { ...this.app.about.options, ...options } };
+    return this.#open(source, () => collect(files, source.options));
+  }
+
+  async #open(source, payload, places) {
+    const { app } = this;
+    const sequence = await app.work.run('target', source.kind === 'zoo' ? 'making the creature' : 'reading', async (progress) => {
+      const message = await payload();
+      const transfer = (message.files ?? []).map((file) => file.bytes.buffer);
+      return app.engine.call('target', message, { progress, transfer });
+    });
+    if (!sequence) return false;
+    this.known = sequence;
+    app.engine.keepTarget(sequence);
+    const points = places?.(sequence.sizes.vertices) ?? app.doc.points.map(({ source: vertex }) => fresh(vertex));
+    app.edit({ target: { source, sequence }, points, ...(places && { count: points.length, run: null }) });
+    return true;
+  }
+
+  /**
+   * Opens two creatures of the zoo with the true pairs between them.
+   * @param {string} source @param {string} target names
+   */
+  async openPair(source, target) {
+    const { app } = this;
+    const recipes = [source, target].map((name) => ({ ...app.about.recipe, name }));
+    const pairs = await app.work.run('pairs', 'finding the pairs', () =>
+      app.engine.call('landmarks', { source: recipes[0], target: recipes[1] }));
+    if (!pairs || !(await app.openCreature(recipes[0]))) return;
+    await this.openCreature(recipes[1], () => Array.from(pairs.source, (vertex, i) =>
+      Object.freeze({ source: vertex, target: pairs.target[i], state: 'placed', confidence: 1 })));
+  }
+
+  close() {
+    this.app.edit({ target: null, points: this.app.doc.points.map(({ source }) => fresh(source)) });
+  }
+
+  /** How many of the points in use are where: `{placed, proposed, missing}`. */
+  get tally() {
+    const tally = { placed: 0, proposed: 0, missing: 0 };
+    for (const { state } of this.app.keypoints.used) tally[state === 'none' ? 'missing' : state]++;
+    return tally;
+  }
+
+  /** The point that a click on the target places. */
+  get wanted() {
+    const { app } = this;
+    if (app.selected >= 0) return app.selected;
+    const { used } = app.keypoints;
+    if (this.next >= 0 && used[this.next]?.state !== 'placed') return this.next;
+    return used.findIndex(({ state }) => state !== 'placed');
+  }
+
+  /** Puts a point where a vertex of the target is. */
+  place(index, vertex, mark = null) {
+    const { app } = this;
+    const { points } = app.doc;
+    if (!points[index]) return;
+    if (points.some(({ target, state }, i) => i !== index && state === 'placed' && target === vertex)) return;
+    app.edit({ points: points.with(index, Object.freeze({ ...points[index], target: vertex, state: 'placed', confidence: 1 })) }, mark);
+  }
+
+  /** Takes a point away from the target. */
+  remove(index) {
+    const { points } = this.app.doc;
+    if (points[index]?.target == null) return;
+    this.app.edit({ points: points.with(index, Object.freeze({ ...fresh(points[index].source), state: 'none' })) });
+    this.proposing();
+  }
+
+  accept(index) {
+    const { points } = this.app.doc;
+    if (points[index]?.state !== 'proposed') return;
+    this.app.edit({ points: points.with(index, placed(points[index])) });
+    this.proposing();
+  }
+
+  acceptAll() {
+    this.app.edit({ points: this.app.doc.points.map((point) => (point.state === 'proposed' ? placed(point) : point)) });
+    this.next = -1;
+    this.app.changed('doc');
+    this.app.play();
+  }
+
+  /** Asks for all places again that are not certain, also those that were taken away. */
+  proposeAgain() {
+    const { points } = this.app.doc;
+    this.app.edit({ points: points.map((point) => (point.state === 'placed' ? point : fresh(point.source))) });
+    this.proposing();
+  }
+
+  /** Sees to it that the weights on the target are known. */
+  weigh() {
+    const { paired, field } = this;
+    const same = field && paired.length === field.targets.length && paired.every(({ target }, i) => target === field.targets[i]);
+    if (paired.length && !same) this.weighing();
+  }
+
+  get paired() {
+    return this.app.keypoints.used.filter(({ target }) => target != null);
+  }
+
+  async #weigh() {
+    const { app, paired } = this;
+    const { target } = app.doc;
+    const targets = paired.map((point) => point.target);
+    if (!target || !targets.length || new Set(targets).size < targets.length) return;
+    const weights = await app.work.run('weights', 'weights', () => app.engine.call('target_weights', { points: targets }));
+    if (!weights || app.doc.target !== target) return;
+    this.field = { points: paired.map(({ source }) => source), targets, weights };
+    if (app.view === 'weights') app.paint();
+  }
+
+  react(before, after) {
+    const { app } = this;
+    if (before.target !== after.target) {
+      const sequence = after.target?.sequence ?? null;
+      if (sequence !== this.known) {
+        this.known = sequence;
+        app.engine.keepTarget(sequence);
+        const told = sequence ? app.engine.call('restore_target', { kept: sequence }) : app.engine.call('drop_target', {});
+        told.catch(() => {});
+      }
+      this.next = -1;
+      this.field = null;
+      app.changed('target');
+    }
+    if (app.view === 'weights') this.weigh();
+    const used = after.points.slice(0, after.count);
+    if (after.target && used.some(({ state }) => state === 'missing')) this.proposing();
+  }
+
+  async #propose() {
+    const { app } = this;
+    const { target } = app.doc;
+    const { used } = app.keypoints;
+    if (!target || !used.some(({ state }) => state !== 'placed')) {
+      this.next = -1;
+      app.changed('doc');
+      return;
+    }
+    const points = used.map(({ source }) => source);
+    const known = used.map(({ state, target: vertex }) => (state === 'placed' ? vertex : -1));
+    const answer = await app.work.run('pairs', 'looking for the points', () => app.engine.call('propose', { points, known }));
+    if (!answer || app.doc.target !== target) return;
+    const found = new Map(points.map((source, i) => [source, { target: answer.targets[i], confidence: answer.confidences[i] }]));
+    this.next = answer.next ?? -1;
+    app.amend({ points: app.doc.points.map((point) => proposed(point, found.get(point.source))) });
+  }
+}
+
+const placed = (point) => Object.freeze({ ...point, state: 'placed', confidence: 1 });
+
+/** A point with what is proposed for it, unless that was decided by hand. */
+function proposed(point, proposal) {
+  if (!proposal || point.state === 'placed' || point.state === 'none') return point;
+  return Object.freeze({ ...point, target: proposal.target, state: 'proposed', confidence: proposal.confidence });
+}

@@ -1,0 +1,83 @@
+/** The motion of the target: follows from the pairs, and can be taken away as a file. */
+import { latest } from './work.js';
+
+export class Transfer {
+  /** @param {import('./app.js').App} app */
+  constructor(app) {
+    this.app = app;
+    /** The engine's answer: `{handles, indices, weights, K, matrices, warnings, seconds}`; null: the target stands still. */
+    this.motion = null;
+    /** Files that were made of this motion, by form. */
+    this.files = new Map();
+    this.move = latest(() => this.#move());
+  }
+
+  /** How the target moves. */
+  get method() {
+    return this.app.doc.method || this.app.about.transfer.method;
+  }
+
+  setMethod(method) {
+    this.app.edit({ method: method === this.app.about.transfer.method ? '' : method });
+  }
+
+  /** The points that have a place on both sides. */
+  get pairs() {
+    return this.app.keypoints.used.filter(({ target }) => target != null).map(({ source, target }) => ({ source, target }));
+  }
+
+  forget() {
+    this.#set(null);
+  }
+
+  react(before, after) {
+    if (before.target !== after.target) this.#set(null);
+    const same = before.target === after.target && before.method === after.method && before.count === after.count && before.points === after.points;
+    if (!same && after.target) this.move();
+  }
+
+  async #move() {
+    const { app, pairs } = this;
+    const { target } = app.doc;
+    if (!target || !pairs.length || !app.keypoints.hasMotion) {
+      if (this.motion) this.#set(null);
+      return;
+    }
+    const started = performance.now();
+    const message = {
+      pairs: pairs.flatMap(({ source, target: vertex }) => [source, vertex]),
+      parameters: { ...app.about.transfer, method: this.method },
+      quick: app.held,
+    };
+    const answer = await app.work.run('motion', 'moving the target', (progress) => app.engine.call('transfer', message, { progress }));
+    if (!answer || app.doc.target !== target) return;
+    answer.took = (performance.now() - started) / 1000;
+    answer.pairs = pairs.length;
+    answer.quick = message.quick;
+    this.#set(answer);
+  }
+
+  #set(motion) {
+    this.motion = motion;
+    this.files.clear();
+    this.app.changed('motion');
+  }
+
+  /**
+   * The moving target as a GLB, made once.
+   * @param {'exact'|'light'} form
+   * @returns {Promise<{blob: Blob, error: number, rms: number}|undefined>} errors that the form adds, over the diagonal
+   */
+  async file(form) {
+    const { app, motion } = this;
+    if (!motion) return undefined;
+    if (!this.files.has(form)) {
+      const answer = await app.work.run(`export ${form}`, 'writing the file', (progress) =>
+        app.engine.call('export_transfer', { form }, { progress }));
+      if (!answer || this.motion !== motion) return undefined;
+      this.files.set(form, { blob: new Blob([answer.bytes], { type: 'model/gltf-binary' }), error: answer.error, rms: answer.rms });
+      app.changed('files');
+    }
+    return this.files.get(form);
+  }
+}
