@@ -167,7 +167,7 @@ impl Energy {
         scratch.place[one as usize] = FIXED;
         field.value[one as usize] = 1.0;
         for round in 0..ROUNDS {
-                self.solve(&mut field, scratch);
+            self.solve(&mut field, scratch);
             let changed = self.mend(&mut field, scratch, 2 * round < ROUNDS);
             if !changed {
                 break;

@@ -72,7 +72,8 @@ impl<'a> Full<'a> {
     pub fn fitted(&self, weights: Weights) -> Fitted {
         let groups = self.groups(&weights);
         let fitter = self.fitter(&weights, &groups);
-        let in_mesh_units = |fit: Fit| Fit { maps: fit.maps.iter().map(|m| rescaled(m, self.surface.ball)).collect(), ..fit };
+        let in_mesh_units =
+            |fit: Fit| Fit { maps: fit.maps.iter().map(|m| rescaled(m, self.surface.ball)).collect(), ..fit };
         let fits: Vec<Fit> = self.surface.poses.iter().map(|pose| in_mesh_units(fitter.fit(pose))).collect();
         let error = mean(fits.iter().map(|fit| fit.error));
         let groups = self.surface.number.iter().map(|&n| groups[n as usize]).collect();

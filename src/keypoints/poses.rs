@@ -16,7 +16,8 @@ pub fn spread(surface: &Surface) -> Vec<usize> {
     }
     let step = surface.used.len().div_ceil(COMPARED).max(1);
     let compared: Vec<usize> = surface.used.iter().step_by(step).map(|&v| v as usize).collect();
-    let distance = |a: &[glam::DVec3], b: &[glam::DVec3]| compared.iter().map(|&v| a[v].distance_squared(b[v])).sum::<f64>();
+    let distance =
+        |a: &[glam::DVec3], b: &[glam::DVec3]| compared.iter().map(|&v| a[v].distance_squared(b[v])).sum::<f64>();
     let mut nearest: Vec<f64> = surface.poses.iter().map(|pose| distance(pose, &surface.reference)).collect();
     let mut chosen = Vec::new();
     while chosen.len() < MOST_POSES {

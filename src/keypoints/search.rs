@@ -418,12 +418,7 @@ impl<'a> Leftover<'a> {
     }
 }
 
-fn entries<'a>(
-    rows: &'a Rows,
-    v: usize,
-    p: DVec3,
-    at: &'a [DVec3],
-) -> impl Iterator<Item = (usize, [f64; 4])> + 'a {
+fn entries<'a>(rows: &'a Rows, v: usize, p: DVec3, at: &'a [DVec3]) -> impl Iterator<Item = (usize, [f64; 4])> + 'a {
     rows.entries(v).map(move |(k, w)| {
         let local = p - at[k as usize];
         (k as usize, [w * local.x, w * local.y, w * local.z, w])

@@ -149,7 +149,21 @@ impl Fitter {
         let coupling = coupling(&groups);
         let (rows, handles) = (rig.weights.clone(), rig.handles.to_vec());
         let total = mass.iter().sum();
-        Self { parameters: *parameters, centre, radius, points, mass, total, rows, handles, at, hold, factor, groups, coupling }
+        Self {
+            parameters: *parameters,
+            centre,
+            radius,
+            points,
+            mass,
+            total,
+            rows,
+            handles,
+            at,
+            hold,
+            factor,
+            groups,
+            coupling,
+        }
     }
 
     /// The maps that make the rig follow `pose` (#V points, in the reference's order).
