@@ -119,12 +119,48 @@ fn parameters_reach_the_report() {
 }
 
 #[test]
+fn weights_are_written_as_numpy_and_a_report() {
+    let folder = folder("weights");
+    strip(&folder);
+    // The same handles as a JSON list and as plain numbers.
+    std::fs::write(folder.join("handles.json"), "[0, 6,\n 2]").unwrap();
+    std::fs::write(folder.join("handles.txt"), "0 6\n2\n").unwrap();
+    for (handles, more, joint) in [("handles.json", &[][..], false), ("handles.txt", &["--joint"], true)] {
+        let arguments =
+            ["weights", "rest.obj", "--handles", handles, "--out", "weights.npy", "--report", "report.json"];
+        let output = sinew(&folder, &[&arguments[..], more].concat());
+        assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+        let bytes = std::fs::read(folder.join("weights.npy")).unwrap();
+        let array = npyz::NpyFile::new(&bytes[..]).unwrap();
+        assert_eq!((array.shape(), array.order()), (&[7, 3][..], npyz::Order::C));
+        let values = array.into_vec::<f64>().unwrap();
+        for row in values.chunks_exact(3) {
+            assert!((row.iter().sum::<f64>() - 1.0).abs() < 1e-12 && row.iter().all(|w| (0.0..=1.0).contains(w)));
+        }
+        for (j, handle) in [0, 6, 2].into_iter().enumerate() {
+            assert_eq!(values[handle * 3 + j], 1.0);
+        }
+        let report = json(&std::fs::read(folder.join("report.json")).unwrap());
+        assert!(report["kkt_residual"].as_f64().unwrap() <= 1e-6);
+        assert!(report["seconds"]["total"].as_f64().unwrap() >= report["seconds"]["solve"].as_f64().unwrap());
+        assert_eq!((&report["vertices"], &report["faces"]), (&Value::from(7), &Value::from(5)));
+        assert_eq!(report["handles"], serde_json::json!([0, 6, 2]));
+        assert_eq!(report["energies"].as_array().unwrap().len(), 3);
+        assert_eq!(report["parameters"]["joint"], joint);
+        assert!(report["warnings"].is_array());
+    }
+}
+
+#[test]
 fn what_cannot_be_used_is_one_sentence_and_status_2() {
     let folder = folder("refusals");
     strip(&folder);
     slider(&folder);
     std::fs::write(folder.join("bad.obj"), "v 0 0 0\nf 1 2 3\n").unwrap();
     std::fs::write(folder.join("bad.glb"), "glTF").unwrap();
+    for (name, text) in [("far.txt", "0 7"), ("twice.txt", "3 1 3"), ("word.txt", "0 one"), ("none.json", "[]")] {
+        std::fs::write(folder.join(name), text).unwrap();
+    }
     for (arguments, part) in [
         (&["inspect", "nothing.obj"][..], "nothing.obj cannot be read"),
         (&["inspect", "bad.obj"], "names vertex 2"),
@@ -132,6 +168,11 @@ fn what_cannot_be_used_is_one_sentence_and_status_2() {
         (&["inspect", "slider.glb", "--clip", "fly"], "no clip \"fly\""),
         (&["inspect", "slider.glb", "--fps", "0"], "above 0"),
         (&["segment", "rest.obj", "bad.obj"], "bad.obj"),
+        (&["weights", "rest.obj", "--handles", "far.txt"], "handle 7 does not exist"),
+        (&["weights", "rest.obj", "--handles", "twice.txt"], "vertex 3 is named as a handle twice"),
+        (&["weights", "rest.obj", "--handles", "word.txt"], "“one” is not a vertex number"),
+        (&["weights", "rest.obj", "--handles", "none.json"], "there are no handles"),
+        (&["weights", "rest.obj", "--handles", "nothing.txt"], "nothing.txt cannot be read"),
         (&["zoo", "unicorn"], "there is no unicorn"),
     ] {
         let output = sinew(&folder, arguments);

@@ -151,9 +151,11 @@ proptest! {
         let positions: Vec<DVec3> =
             coordinates.iter().map(|&[x, y, z]| DVec3::new(f64::from(x), f64::from(y) * stretch, f64::from(z))).collect();
         let solver = solver(&faces, &positions);
-        match solver.weights(&handles, &Parameters::default()) {
-            Ok(weights) => assert_shares(&weights),
-            Err(error) => assert!(matches!(error, WeightsError::SamePlace { .. }), "{error}"),
+        for joint in [false, true] {
+            match solver.weights(&handles, &Parameters { joint }) {
+                Ok(weights) => assert_shares(&weights),
+                Err(error) => assert!(matches!(error, WeightsError::SamePlace { .. }), "{error}"),
+            }
         }
     }
 }

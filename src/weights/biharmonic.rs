@@ -2,6 +2,7 @@
 
 use super::box_problem::{self, Column, State};
 use super::follow;
+use super::joint;
 use super::levels::{self, Level};
 use super::surface::Surface;
 use super::{Parameters, Weights, WeightsError};
@@ -148,18 +149,18 @@ impl Biharmonic {
     }
 
     fn finish(&self, handles: &[u32], places: &[u32], raw: Vec<Column>, parameters: &Parameters) -> Weights {
-        let rows = follow::rows(&self.finest().surface, &raw);
+        let joint = parameters.joint.then(|| joint::solve(self.finest(), places, &raw));
+        let columns = joint.as_deref().unwrap_or(&raw);
+        let rows = follow::rows(&self.finest().surface, columns);
         let count = handles.len();
         let of_vertex = |&v: &u32| rows[v as usize * count..(v as usize + 1) * count].iter().copied();
         let values = self.finest().surface.welded.iter().flat_map(of_vertex).collect();
-        let kkt_residual = raw.iter().map(|c| c.residual).fold(0.0, f64::max);
-        let energies = raw.iter().map(|c| c.energy * self.finest().surface.radius.powi(2)).collect();
-        let mut warnings = self.warnings(places, kkt_residual);
-        if parameters.joint {
-            let message = "the joint form is not available yet; rows were divided by their sums instead";
-            warnings.push(Warning::new("no-joint-form", message));
-        }
-        Weights { handles: handles.to_vec(), values, kkt_residual, energies, warnings, raw }
+        let sum = |&v: &u32| columns.iter().map(|column| column.weights[v as usize]).sum();
+        let sums = self.finest().surface.welded.iter().map(sum).collect();
+        let kkt_residual = columns.iter().map(|c| c.residual).fold(0.0, f64::max);
+        let energies = columns.iter().map(|c| c.energy * self.finest().surface.radius.powi(2)).collect();
+        let warnings = self.warnings(places, kkt_residual);
+        Weights { handles: handles.to_vec(), values, sums, kkt_residual, energies, warnings, raw }
     }
 
     fn warnings(&self, places: &[u32], residual: f64) -> Vec<Warning> {

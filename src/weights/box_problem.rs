@@ -23,6 +23,10 @@ const BOUND: f64 = 1e-14;
 /// Which force counts as none, in shares of the largest.
 const FORCE: f64 = 7e-7;
 
+/// The same on meshes of at most so many vertices, where rounding allows it and rounds cost nothing.
+const SMALL: usize = 300;
+const FORCE_IF_SMALL: f64 = 1e-11;
+
 /// Which force counts as rounding, in shares of the diagonal of Q.
 const ROUNDING: f64 = 4e-15;
 
@@ -177,7 +181,11 @@ impl<'a> Problem<'a> {
 
     /// The force at a vertex that counts as none.
     pub(super) fn tolerance(&self, v: u32, largest: f64) -> f64 {
-        FORCE * largest + ROUNDING * self.quadratic.diagonal[v as usize]
+        self.no_force() * largest + ROUNDING * self.quadratic.diagonal[v as usize]
+    }
+
+    fn no_force(&self) -> f64 {
+        if self.members.len() <= SMALL { FORCE_IF_SMALL } else { FORCE }
     }
 
     pub(super) fn largest_force(&self) -> f64 {
@@ -188,7 +196,7 @@ impl<'a> Problem<'a> {
     fn refine(&mut self, column: &mut Column) -> bool {
         for _ in 0..REFINEMENTS {
             let before = self.largest_free_force(column);
-            if before <= 0.1 * FORCE * self.largest_force() {
+            if before <= 0.1 * self.no_force() * self.largest_force() {
                 return true;
             }
             let weights = column.weights.clone();

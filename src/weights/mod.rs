@@ -22,6 +22,7 @@ mod error;
 mod factor;
 mod follow;
 mod fronts;
+mod joint;
 mod levels;
 mod parameters;
 mod quadratic;

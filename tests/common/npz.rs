@@ -16,6 +16,7 @@ pub fn data(left_out: &str) -> Option<PathBuf> {
 }
 
 /// Reads a sequence.
+#[allow(dead_code)]
 pub fn sequence(path: &Path) -> Sequence {
     let mut archive = npyz::npz::NpzArchive::open(path).expect("a NumPy archive");
     let points = |(values, _): (Vec<f64>, _)| -> Vec<DVec3> { values.chunks_exact(3).map(DVec3::from_slice).collect() };
