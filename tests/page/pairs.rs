@@ -125,18 +125,21 @@ fn everything_is_undone_and_redone() {
 #[ignore = "drives the built page in Chromium: run by `cargo xtask test`"]
 fn a_point_is_dragged_and_the_motion_follows() {
     let mut page = proposed(Backend::WebGl2, Screen::Small);
-    // A pin of the target that can be seen.
+    // A pin of the target that can be seen, and a way to go that stays on the surface.
     let seen = page.evaluate(
         "(() => { const { second } = sinew.app, box = second.canvas.getBoundingClientRect();
-        const pins = second.pinPositions(); const i = pins.findIndex((p) => p.visible && p.x > 40 && p.y > 60);
-        return [i, box.x + pins[i].x, box.y + pins[i].y]; })()",
+        const ways = [[14, 0], [-14, 0], [0, 14], [0, -14]];
+        for (const [i, pin] of second.pinPositions().entries()) {
+          const way = pin.visible && ways.find(([dx, dy]) => second.pick(pin.x + dx, pin.y + dy));
+          if (way && second.pickPin(pin.x, pin.y, 4) === i) return [i, box.x + pin.x, box.y + pin.y, ...way];
+        } })()",
     );
-    let [index, x, y] = [0, 1, 2].map(|i| seen[i].as_f64().unwrap_or(-1.0));
+    let [index, x, y, dx, dy] = [0, 1, 2, 3, 4].map(|i| seen[i].as_f64().unwrap_or(-1.0));
     assert!(index >= 0.0, "no pin can be seen");
     let vertex = format!("sinew.app.doc.points[{index}].target");
     let before = page.evaluate(&vertex);
     let undo = page.state()["undo"].as_u64().unwrap_or(0);
-    page.drag_from((x, y), (14.0, -12.0));
+    page.drag_from((x, y), (dx, dy));
     page.wait_until(&format!("sinew.app.doc.points[{index}].state === 'placed' && {IDLE}"), PATIENT);
     assert_ne!(page.evaluate(&vertex), before, "the point did not move");
     assert_eq!(page.state()["undo"], undo + 1, "a drag is one step back");

@@ -40,7 +40,7 @@ function build(app) {
     const chosen = method.querySelector(`[value="${name}"]`);
     if (chosen) chosen.checked = true;
     about.textContent = METHODS.find(([id]) => id === name)?.[2] ?? '';
-    show(numbers, motion && motionFacts(app));
+    show(numbers, motion && app.target.sequence && motionFacts(app));
     show(noticed, ...warnings(app, motion?.warnings, app.second));
   };
   app.on('doc motion target source', update);
