@@ -7,8 +7,11 @@ mod npz;
 use criterion::Criterion;
 use sinew::clock;
 use sinew::keypoints::{KeyPoints, Parameters, fit_all, select, thinned};
+use sinew::mesh::ball::unit_ball;
+use sinew::mesh::laplacian::Laplacian;
 use sinew::observer::Silent;
 use sinew::sequence::Sequence;
+use sinew::skinning::{Fitter, Rig, Rows};
 use sinew::zoo::{self, Recipe};
 
 /// Vertices, poses and points of the comparison.
@@ -47,6 +50,34 @@ fn by_criterion(criterion: &mut Criterion, horse: &Sequence, parameters: &Parame
     group.finish();
 }
 
+/// One pose of a prepared rig of 15 handles.
+fn a_pose(criterion: &mut Criterion, horse: &Sequence, parameters: &Parameters) {
+    let points = run(horse, &Parameters { points: Some(15), ..parameters.clone() }).1.key_points;
+    let fitted = fit_all(horse, &points, parameters).expect("a fit");
+    let laplacian = Laplacian::new(horse.faces(), horse.reference());
+    let rows = Rows::new(&fitted.weights.values, points.len());
+    let rig = Rig {
+        reference: horse.reference(),
+        edges: &laplacian.edges,
+        stiffness: &laplacian.cotangents,
+        mass: &vec![1.0; horse.reference().len()],
+        handles: &points,
+        weights: &rows,
+        groups: &fitted.groups,
+        ball: unit_ball(horse.faces(), horse.reference()),
+    };
+    criterion.bench_function("prepare a rig of 15 handles", |b| b.iter(|| Fitter::new(&rig, &parameters.fit())));
+    let fitter = Fitter::new(&rig, &parameters.fit());
+    let poses = horse.poses();
+    let mut turn = 0;
+    criterion.bench_function("fit a pose with 15 handles", |b| {
+        b.iter(|| {
+            turn = (turn + 1) % poses.len();
+            fitter.fit(&poses[turn].positions)
+        });
+    });
+}
+
 fn starts(horse: &Sequence, parameters: &Parameters) {
     let error = |seed| last(&run(horse, &Parameters { seed, ..parameters.clone() }).1);
     let errors: Vec<f64> = (0..10).map(error).collect();
@@ -77,6 +108,7 @@ fn main() {
     let parameters = Parameters { points: Some(POINTS), ..Parameters::default() };
     let mut criterion = Criterion::default().configure_from_args();
     by_criterion(&mut criterion, &horse, &parameters);
+    a_pose(&mut criterion, &horse, &parameters);
     criterion.final_summary();
     starts(&horse, &parameters);
     against_the_letter(&horse, &parameters);

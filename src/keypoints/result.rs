@@ -11,7 +11,8 @@ pub struct KeyPoints {
     /// Vertices of the sequence, the most telling first.
     pub key_points: Vec<u32>,
     /// The error when only the first 1, 2, … of them are used: mean vertex distance between the poses and the skinned
-    /// reference, over all poses and all vertices that faces use, in radii of the unit sphere.
+    /// reference, over all poses and all vertices that faces use, in radii of the unit sphere. The last one is measured
+    /// on the mesh itself; on large meshes those before it are measured on a coarse one.
     pub errors: Vec<f64>,
     /// The candidates in the order they were found.
     pub candidates: Vec<u32>,

@@ -117,30 +117,33 @@ impl<'a> Search<'a> {
         }
     }
 
-    /// The order of taking points away that costs least each time, reversed: the last point left comes first.
-    pub fn order(&self, keep_going: KeepGoing) -> Option<Vec<usize>> {
+    /// The points in the order in which they count, and the error with the first 1, 2, … of them: time and again the one
+    /// is taken away that can be spared best, and what is left first comes first.
+    pub fn order(&mut self, keep_going: KeepGoing) -> Option<(Vec<usize>, Vec<f64>)> {
         let mut set = self.set.clone();
-        let mut order = Vec::new();
+        let (mut order, mut errors) = (Vec::new(), vec![set.error]);
         while set.members.len() > 1 {
-            let mut best: Option<Set> = None;
-            let mut gone = 0;
+            let mut best: Option<(usize, Set)> = None;
             for place in 0..set.members.len() {
                 if !keep_going() {
                     return None;
                 }
                 let mut rest = self.without(&set, place);
                 rest.error = self.error(&rest);
-                if best.as_ref().is_none_or(|b| rest.error < b.error) {
-                    gone = place;
-                    best = Some(rest);
+                if best.as_ref().is_none_or(|(_, b)| rest.error < b.error) {
+                    best = Some((place, rest));
                 }
             }
+            let (gone, rest) = best?;
             order.push(set.members[gone]);
-            set = best?;
+            set = self.refined(rest);
+            set = self.regrouped(set);
+            errors.push(set.error);
         }
         order.extend(set.members);
         order.reverse();
-        Some(order)
+        errors.reverse();
+        Some((order, errors))
     }
 
     /// Takes a set over as the current one; `probes` are those of the set before its last point came in.
@@ -164,11 +167,15 @@ impl<'a> Search<'a> {
 
     /// Groups of the current set (§3.3), and its error with them.
     fn regroup(&mut self) {
-        let handles = self.handles(&self.set.members);
-        let weights = self.weights(&self.set);
-        let surface = &self.coarse.surface;
-        self.set.groups = clusters(&weights, &self.coarse.features, &handles, &surface.counts);
-        self.set.error = self.error(&self.set);
+        let set = std::mem::take(&mut self.set);
+        self.set = self.regrouped(set);
+    }
+
+    fn regrouped(&self, mut set: Set) -> Set {
+        let handles = self.handles(&set.members);
+        set.groups = clusters(&self.weights(&set), &self.coarse.features, &handles, &self.coarse.surface.counts);
+        set.error = self.error(&set);
+        set
     }
 
     fn handles(&self, members: &[usize]) -> Vec<u32> {

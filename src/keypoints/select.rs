@@ -9,18 +9,18 @@ use super::poses;
 use super::result::{Fitted, KeyPointError, KeyPoints, Replacement, Step};
 use super::search::Search;
 use super::surface::Surface;
-use super::thin::Thin;
 use super::watch::Watch;
 use super::{Parameters, Stop};
 use crate::observer::Observer;
 use crate::sequence::Sequence;
 use crate::warning::Warning;
+use crate::weights::Weights;
 
 /// Vertices of the coarse mesh on which sets are tried.
 const COARSE: usize = 600;
 
-/// Meshes of more vertices than this have the first part of their error curve measured on about so many.
-const MEASURED: usize = 6_000;
+/// Meshes of more vertices than this have their error curve measured on the coarse mesh, but for its end.
+const MEASURED: usize = 1_500;
 
 /// Points of a mesh that does not move, if nobody says how many.
 const STILL: usize = 12;
@@ -51,33 +51,25 @@ pub fn select(
     let mut warnings = Vec::new();
 
     watch.begin("coarse mesh", 0.05)?;
-    let thin = (surface.reference.len() > 2 * MEASURED).then(|| Thin::new(sequence, &surface, &found, MEASURED));
     let full = prepared(sequence, &surface, parameters)?;
-    let mut scale = Scale { full, thin: None };
-    if let Some(thin) = &thin {
-        scale.thin = Some((thin, prepared(&thin.sequence, &thin.surface, parameters)?));
-    }
     let choice = if surface.poses.is_empty() {
         let message = "the mesh has no other pose: its points are spread evenly over the surface";
         warnings.push(Warning::new("still-mesh", message));
         let count = parameters.points.unwrap_or(STILL).min(parameters.max);
         let points: Vec<u32> = names.iter().take(count).copied().collect();
-        Choice { errors: vec![0.0; points.len()], points, ..Choice::default() }
+        let end = Measured { errors: vec![0.0; points.len()], weights: full.weights(&points, None)?, points };
+        Choice { end, steps: Vec::new(), replacements: Vec::new() }
     } else if parameters.literal {
-        by_the_letter(&scale, parameters, &names, &mut watch)?
+        by_the_letter(&full, parameters, &names, &mut watch)?
     } else {
         let gammas = [parameters.gamma_rotation, parameters.gamma_shear];
         let coarse = Coarse::new(&surface, &found, &poses::spread(&surface), COARSE, gammas);
-        on_the_coarse_mesh(&coarse, &scale, parameters, &mut watch)?
+        on_the_coarse_mesh(&coarse, &full, parameters, &mut watch)?
     };
 
     watch.begin("fits", 0.95)?;
-    let Choice { points, mut errors, steps, replacements } = choice;
-    let fitted = scale.full.fitted(scale.full.weights(&points, None)?);
-    // The same, but for a mesh whose curve was measured on a thinner one.
-    if let Some(last) = errors.last_mut() {
-        *last = fitted.error;
-    }
+    let Choice { end: Measured { points, errors, weights }, steps, replacements } = choice;
+    let fitted = full.fitted(weights);
     if let Some(wanted) = parameters.points.filter(|&wanted| points.len() < wanted) {
         let message = format!("only {} points instead of {wanted}: there are no more candidates", points.len());
         warnings.push(Warning::new("few-candidates", message));
@@ -117,45 +109,65 @@ fn prepared<'a>(
 }
 
 /// What a search chose.
-#[derive(Default)]
 struct Choice {
-    points: Vec<u32>,
-    errors: Vec<f64>,
+    end: Measured,
     steps: Vec<Step>,
     replacements: Vec<Replacement>,
 }
 
-/// What errors are measured on.
-struct Scale<'a> {
-    full: Full<'a>,
-    thin: Option<(&'a Thin, Full<'a>)>,
+/// Points in their order, the error with the first 1, 2, … of them, and the weights of all.
+struct Measured {
+    points: Vec<u32>,
+    errors: Vec<f64>,
+    weights: Weights,
 }
 
-impl Scale<'_> {
-    /// The error with the first 1, 2, … points, up to the first that is at most `enough`.
-    fn curve(&self, points: &[u32], enough: f64, watch: &mut Watch) -> Result<Vec<f64>, KeyPointError> {
-        let (full, points) = match &self.thin {
-            Some((thin, full)) => (full, points.iter().map(|&v| thin.number(v)).collect()),
-            None => (&self.full, points.to_vec()),
-        };
-        let mut errors = Vec::new();
-        let mut before = None;
-        for count in 1..=points.len() {
-            watch.tell(0.8 + 0.15 * count as f64 / points.len() as f64)?;
-            let weights = full.weights(&points[..count], before.as_ref())?;
-            let error = full.error(&weights, &full.groups(&weights));
-            errors.push(error);
-            if error <= enough {
-                break;
-            }
-            before = Some(weights);
+/// The error curve of points in their order.
+///
+/// On large meshes, `estimates` of it are taken from the coarse mesh, by the factor by which they are wrong at the end;
+/// the end itself is always measured on the mesh. With a sufficient error `enough`, the curve ends there.
+fn measured(
+    full: &Full,
+    points: &[u32],
+    estimates: Option<&[f64]>,
+    enough: Option<f64>,
+    watch: &mut Watch,
+) -> Result<Measured, KeyPointError> {
+    let mut errors = Vec::new();
+    let mut weights = None;
+    let mut from = 1;
+    if let Some(estimates) = estimates.filter(|_| full.surface.reference.len() > MEASURED) {
+        let all = full.weights(points, None)?;
+        let error = full.error(&all, &full.groups(&all));
+        let factor = estimates.last().map_or(1.0, |&e| if e > 0.0 { error / e } else { 1.0 });
+        errors.extend(estimates.iter().map(|e| e * factor));
+        let sufficient = |e: &f64| enough.is_some_and(|enough| *e <= enough);
+        from = errors.iter().position(sufficient).map_or(points.len(), |place| place + 1);
+        if from == points.len() {
+            return Ok(Measured { points: points.to_vec(), errors, weights: all });
         }
-        Ok(errors)
+        errors.truncate(from - 1);
+        weights = Some(all);
     }
+    for count in from..=points.len() {
+        watch.tell(0.8 + 0.15 * count as f64 / points.len() as f64)?;
+        let of_these = full.weights(&points[..count], weights.as_ref())?;
+        let error = full.error(&of_these, &full.groups(&of_these));
+        errors.push(error);
+        weights = Some(of_these);
+        if enough.is_some_and(|enough| error <= enough) {
+            break;
+        }
+    }
+    let weights = match weights {
+        Some(weights) => weights,
+        None => full.weights(points, None)?,
+    };
+    Ok(Measured { points: points[..errors.len()].to_vec(), errors, weights })
 }
 
 fn by_the_letter(
-    scale: &Scale,
+    full: &Full,
     parameters: &Parameters,
     candidates: &[u32],
     watch: &mut Watch,
@@ -166,22 +178,22 @@ fn by_the_letter(
         curve.push(error);
         is_enough(parameters, &curve)
     };
-    let found = literal::search(&scale.full, candidates, &mut enough, &mut || watch.go_on(0.1))?;
+    let found = literal::search(full, candidates, &mut enough, &mut || watch.go_on(0.1))?;
     let found = found.ok_or(KeyPointError::Cancelled)?;
     watch.begin("error curve", 0.8)?;
-    let errors = scale.curve(&found.points, -1.0, watch)?;
-    Ok(Choice { points: found.points, errors, steps: found.steps, replacements: found.replacements })
+    let end = measured(full, &found.points, None, None, watch)?;
+    Ok(Choice { end, steps: found.steps, replacements: found.replacements })
 }
 
 fn on_the_coarse_mesh(
     coarse: &Coarse,
-    scale: &Scale,
+    full: &Full,
     parameters: &Parameters,
     watch: &mut Watch,
 ) -> Result<Choice, KeyPointError> {
-    let surface = scale.full.surface;
+    let surface = full.surface;
     let name = |member: usize| surface.origin[coarse.surface.origin[coarse.candidates[member] as usize] as usize];
-    let mut choice = Choice::default();
+    let (mut steps, mut replacements) = (Vec::new(), Vec::new());
     watch.begin("adding points", 0.1)?;
     let mut search = Search::new(coarse, parameters.fit());
     let mut curve = vec![search.set.error];
@@ -196,25 +208,23 @@ fn on_the_coarse_mesh(
             };
             tried.iter_mut().for_each(|t| t.vertex = surface.origin[t.vertex as usize]);
             let chosen = search.set.members.last().map_or(0, |&m| name(m));
-            choice.steps.push(Step { tried, chosen, error: search.set.error });
+            steps.push(Step { tried, chosen, error: search.set.error });
             curve.push(search.set.error);
             more = !is_enough(parameters, &curve);
         }
         watch.begin("replacing points", 0.4)?;
-        replace(&mut search, &name, &mut choice.replacements, watch)?;
+        replace(&mut search, &name, &mut replacements, watch)?;
         watch.begin("ordering points", 0.76)?;
-        let order = search.order(&mut || watch.go_on(0.78)).ok_or(KeyPointError::Cancelled)?;
-        choice.points = order.into_iter().map(name).collect();
+        let (order, estimates) = search.order(&mut || watch.go_on(0.78)).ok_or(KeyPointError::Cancelled)?;
+        let points: Vec<u32> = order.into_iter().map(name).collect();
         watch.begin("error curve", 0.8)?;
         let by_error = parameters.points.is_none() && parameters.stop == Stop::Error;
-        let enough = if by_error { parameters.error } else { -1.0 };
-        choice.errors = scale.curve(&choice.points, enough, watch)?;
-        choice.points.truncate(choice.errors.len());
+        let end = measured(full, &points, Some(&estimates), by_error.then_some(parameters.error), watch)?;
         // The coarse mesh may have been too hopeful.
-        let reached = choice.errors.last().is_none_or(|&error| error <= parameters.error);
-        let count = search.set.members.len();
-        if !by_error || reached || count >= parameters.max.min(coarse.candidates.len()) {
-            return Ok(choice);
+        let reached = end.errors.last().is_none_or(|&error| error <= parameters.error);
+        let most = parameters.max.min(coarse.candidates.len());
+        if !by_error || reached || points.len() >= most {
+            return Ok(Choice { end, steps, replacements });
         }
         more = true;
     }

@@ -40,7 +40,7 @@ pub struct FitParameters {
 
 impl Default for FitParameters {
     fn default() -> Self {
-        Self { lambda: 0.5, hold: 1e-3, rounds: 60, tolerance: 1e-9 }
+        Self { lambda: 0.5, hold: 1e-3, rounds: 60, tolerance: 1e-7 }
     }
 }
 

@@ -156,6 +156,7 @@ impl Proposer {
         let points = vertices.iter().zip(givens).enumerate().map(|(i, (&v, given))| Point {
             place: source.points[v as usize],
             normal: source.vertex_normals[v as usize],
+            remote: source.readings[v as usize].iter().map(|&(s, w)| w * source.remote[s as usize]).sum(),
             weight: if i < company { 1.0 } else { ASKED },
             given,
         });

@@ -30,6 +30,9 @@ const STEEPER: f64 = 1.5;
 /// what is foretold for one from the trunk says nothing.
 const FAR: f64 = 0.02;
 
+/// What a squared difference of the mean distances from everything costs: tips go to tips.
+const REMOTE: f64 = 0.3;
+
 /// A point of the source surface.
 #[derive(Clone, Debug)]
 pub struct Point {
@@ -37,6 +40,8 @@ pub struct Point {
     pub place: DVec3,
     /// Where the surface faces there.
     pub normal: DVec3,
+    /// Its mean distance from the first samples.
+    pub remote: f32,
     /// How much others listen to it.
     pub weight: f64,
     /// The place it has on the target, if that is given.
@@ -206,14 +211,14 @@ impl<'a> Consensus<'a> {
     /// How much longer distances from a point are on the target.
     fn scale(&self, row: &[f32], heard: &[(u32, f64)], i: usize) -> f64 {
         let Some(own) = self.at[i] else { return 1.0 };
-        let (mut both, mut squares) = (1e-6, 1e-6);
+        let (mut squares, mut theirs) = (1e-6, 1e-6);
         for &(j, w) in heard {
             let Some(column) = self.column(j as usize) else { continue };
             let (here, there) = (f64::from(row[j as usize]), f64::from(column[own as usize]));
-            both += w * here * there;
             squares += w * here * here;
+            theirs += w * there * there;
         }
-        (both / squares).clamp(LOCAL_SCALE[0], LOCAL_SCALE[1])
+        (theirs / squares).sqrt().clamp(LOCAL_SCALE[0], LOCAL_SCALE[1])
     }
 
     /// What each considered sample would cost point `i`.
@@ -229,6 +234,9 @@ impl<'a> Consensus<'a> {
                 let off = there - wanted;
                 *cost += w * off * off;
             }
+        }
+        for (cost, far) in field.iter_mut().zip(&self.target.remote) {
+            *cost += REMOTE as f32 * (far - self.points[i].remote) * (far - self.points[i].remote);
         }
         for ((cost, place), normal) in field.iter_mut().zip(&self.target.places).zip(&self.target.normals) {
             *cost += away(voice, *place, *normal, rules) as f32;
@@ -252,7 +260,10 @@ impl<'a> Consensus<'a> {
             let reading = target.readings[v as usize];
             let far = |column: &[f32]| -> f64 { reading.iter().map(|&(s, w)| f64::from(w * column[s as usize])).sum() };
             let distances: f64 = columns.iter().map(|(w, wanted, column)| w * (far(column) - wanted).powi(2)).sum();
-            distances + away(&voice, target.points[v as usize], target.vertex_normals[v as usize], rules)
+            let r: f64 = reading.iter().map(|&(s, w)| f64::from(w * target.remote[s as usize])).sum();
+            distances
+                + REMOTE * (r - f64::from(self.points[i].remote)).powi(2)
+                + away(&voice, target.points[v as usize], target.vertex_normals[v as usize], rules)
         };
         let cells = std::iter::once(own).chain(target.graph.links(own).iter().map(|l| l.0));
         let vertices = cells.flat_map(|cell| &target.members[cell as usize]);

@@ -1,7 +1,10 @@
 //! The similarity that brings weighted points nearest to others.
 //!
 //! S. Umeyama, *Least-squares estimation of transformation parameters between two point patterns*, IEEE Transactions on
-//! Pattern Analysis and Machine Intelligence 13(4), 1991, pp. 376–380. Reflections are ruled out.
+//! Pattern Analysis and Machine Intelligence 13(4), 1991, pp. 376–380. Reflections are ruled out. The
+//! scale is the ratio of the spreads (B. K. P. Horn, *Closed-form solution of absolute orientation using unit quaternions*,
+//! Journal of the Optical Society of America A 4(4), 1987, section 2.D): that of least squares is too small where places are
+//! uncertain, and limbs would shrink a little with every round.
 
 use crate::linalg::rigid_fit::best_rotation;
 use glam::{DMat3, DVec3};
@@ -37,15 +40,15 @@ impl Similarity {
         }
         (from, to) = (from / total, to / total);
         let mut h = DMat3::ZERO;
-        let mut spread = 0.0;
+        let (mut spread, mut there) = (0.0, 0.0);
         for (w, p, q) in pairs {
             let (p, q) = (p - from, q - to);
             h += DMat3::from_cols(q * (w * p.x), q * (w * p.y), q * (w * p.z));
             spread += w * p.length_squared();
+            there += w * q.length_squared();
         }
         let rotation = best_rotation(h);
-        let along = (rotation.x_axis.dot(h.x_axis)) + rotation.y_axis.dot(h.y_axis) + rotation.z_axis.dot(h.z_axis);
-        let scale = if spread > 1e-300 { (along / spread).clamp(SCALE[0], SCALE[1]) } else { 1.0 };
+        let scale = if spread > 1e-300 { (there / spread).sqrt().clamp(SCALE[0], SCALE[1]) } else { 1.0 };
         Self { rotation, scale, from, to }
     }
 

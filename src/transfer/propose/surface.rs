@@ -38,6 +38,8 @@ pub struct Surface {
     pub normals: Vec<DVec3>,
     /// #samples × #samples distances along the surface, row by row.
     distances: Vec<f32>,
+    /// #samples mean distances from the first samples: large at tips.
+    pub remote: Vec<f32>,
     /// The coarse graph.
     pub graph: Graph,
     /// #samples lists of the vertices in each cell.
@@ -72,9 +74,24 @@ impl Surface {
         for &v in &used {
             members[cell[v as usize] as usize].push(v);
         }
-        let mut surface =
-            Self { points, vertex_normals, readings, cell, samples, places, normals, distances, graph, members, sides };
+        let mut surface = Self {
+            points,
+            vertex_normals,
+            readings,
+            cell,
+            samples,
+            places,
+            normals,
+            distances,
+            remote: Vec::new(),
+            graph,
+            members,
+            sides,
+        };
         surface.resize(TYPICAL / f64::from(surface.typical()).max(1e-6));
+        let among = FIRST.min(surface.len());
+        let mean = |s: u32| surface.row(s)[..among].iter().sum::<f32>() / among as f32;
+        surface.remote = (0..surface.len() as u32).map(mean).collect();
         Some(surface)
     }
 
