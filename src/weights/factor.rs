@@ -222,7 +222,8 @@ fn solve_dense(matrix: &mut [f64], right: &mut [f64]) -> bool {
     for k in 0..n {
         let pivot =
             (k..n).fold(k, |best, i| if matrix[i * n + k].abs() > matrix[best * n + k].abs() { i } else { best });
-        if !(matrix[pivot * n + k].abs() > 0.0) {
+        let size = matrix[pivot * n + k].abs();
+        if size.is_nan() || size == 0.0 {
             return false;
         }
         if pivot != k {
