@@ -10,7 +10,7 @@ use sinew::zoo::{self, Recipe};
 
 const HANDLES: usize = 12;
 
-/// The larger mesh takes a minute or more, the joint form longer than it is worth.
+/// Beyond so many vertices the joint form takes minutes.
 const MOST_JOINT: usize = 3_000;
 
 type Mesh = (Vec<[u32; 3]>, Vec<DVec3>);

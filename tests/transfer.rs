@@ -9,7 +9,7 @@ use sinew::linalg::rigid_fit::Moments;
 use sinew::mesh::ball::unit_ball;
 use sinew::observer::Silent;
 use sinew::sequence::{Pose, Sequence};
-use sinew::transfer::{Method, Pair, Parameters, Prepared, Transfer, TransferError, transfer};
+use sinew::transfer::{Pair, Parameters, Prepared, Transfer, TransferError, transfer};
 use sinew::zoo::{self, Creature, Recipe};
 use std::collections::BTreeMap;
 

@@ -53,7 +53,7 @@ export function writeLink(app, timeline) {
   if (timeline.reference) fields.t = 'reference';
   else if (!timeline.playing && timeline.poses > 1) fields.t = timeline.time.toFixed(2);
   const camera = app.stage.kept.camera;
-  if (camera) fields.camera = [...camera].map((value) => Number(value.toPrecision(4))).join();
+  if (camera) fields.look = [...camera].map((value) => Number(value.toPrecision(4))).join();
   const text = Object.entries(fields).map(([name, value]) => `;${name}=${encodeURIComponent(value).replaceAll('%2C', ',')}`).join('');
   return `#${VERSION}${text}`;
 }
@@ -96,7 +96,7 @@ export function optionsOf(fields, { options }) {
 
 /** Number of parts, time and camera that a link names, each undefined if it does not. */
 export function placeOf(fields) {
-  const camera = fields.camera?.split(',').map(Number);
+  const camera = fields.look?.split(',').map(Number);
   const time = Number(fields.t);
   return {
     parts: Number.isInteger(Number(fields.parts)) && fields.parts > 0 ? Number(fields.parts) : undefined,

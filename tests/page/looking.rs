@@ -142,6 +142,6 @@ fn a_link_brings_everything_back() {
     let time = |state: &Value| state["time"].as_f64().unwrap_or(f64::NAN);
     assert!((time(&after) - time(&before)).abs() < 0.01, "{after} after {before}");
     assert_eq!(page.evaluate("location.hash"), hash);
-    let camera = |hash: &Value| hash.as_str().is_some_and(|hash| hash.contains("camera="));
+    let camera = |hash: &Value| hash.as_str().is_some_and(|hash| hash.contains("look="));
     assert!(camera(&hash), "the camera is in the link: {hash}");
 }

@@ -15,6 +15,9 @@ use super::quadratic::Quadratic;
 /// Turns of guessing and splitting, at most.
 const TURNS: usize = 4;
 
+/// With more weights than this, the splitting method goes first: its rounds are the cheaper ones.
+const MOST_DIRECT: usize = 6_000;
+
 /// Weights with a smaller residual are good.
 const GOOD: f64 = 1e-9;
 /// After the first turn, so much will do.
@@ -75,7 +78,7 @@ impl<'a> Piece<'a> {
         self.to_shares(&mut weights);
         let mut best = (weights.clone(), self.residual(&weights));
         for turn in 0..TURNS {
-            if turn > 0 {
+            if turn > 0 || self.open.len() * weights.len() > MOST_DIRECT {
                 self.split(&mut weights);
                 self.to_shares(&mut weights);
                 self.keep(&weights, &mut best);
