@@ -1,11 +1,13 @@
 //! A numbering of the vertices for which Q, and Q restricted to any of them, has a sparse factor.
 //!
-//! Nested dissection by position: A. George. *Nested dissection of a regular finite element mesh*. SIAM J. Numerical
-//! Analysis 10(2), 1973. The vertices are halved across the longest side of their box; those of one half that Q ties to
-//! the other half are numbered last. What separates the whole separates every part, so weights that are nonzero on a part
-//! of the mesh need no numbering of their own.
+//! Approximate minimum degree on all of Q: an order that is good for the whole is good enough for its parts, so weights
+//! that are nonzero on a part of the mesh need no numbering of their own. Should there be no room for that, nested
+//! dissection by position: A. George. *Nested dissection of a regular finite element mesh*. SIAM J. Numerical Analysis
+//! 10(2), 1973. The vertices are halved across the longest side of their box; those of one half that Q ties to the other
+//! half are numbered last.
 
 use super::rings::Rings;
+use crate::linalg::cholesky::minimum_degree;
 use glam::DVec3;
 
 /// Sets of so many vertices are not halved.
@@ -15,6 +17,32 @@ const SMALL: usize = 24;
 ///
 /// `rings` are the neighbours of every vertex, `positions` #V points.
 pub fn order(rings: &Rings, positions: &[DVec3]) -> Vec<u32> {
+    let (starts, rows) = pattern(rings, positions.len());
+    minimum_degree(&starts, &rows).unwrap_or_else(|| dissect(rings, positions))
+}
+
+/// The upper triangle of Q's pattern: for every vertex, those up to it within two edges. Where each one's list starts, and
+/// the lists, ascending.
+fn pattern(rings: &Rings, vertices: usize) -> (Vec<u32>, Vec<u32>) {
+    let (mut starts, mut rows) = (vec![0], Vec::new());
+    let mut near = Vec::new();
+    for v in 0..vertices as u32 {
+        near.clear();
+        near.push(v);
+        for &u in rings.of(v) {
+            near.push(u);
+            near.extend_from_slice(rings.of(u));
+        }
+        near.retain(|&u| u <= v);
+        near.sort_unstable();
+        near.dedup();
+        rows.extend_from_slice(&near);
+        starts.push(rows.len() as u32);
+    }
+    (starts, rows)
+}
+
+fn dissect(rings: &Rings, positions: &[DVec3]) -> Vec<u32> {
     let mut dissection = Dissection {
         positions,
         rings,
@@ -98,9 +126,11 @@ mod tests {
         let positions: Vec<DVec3> = (0..400).map(|i| DVec3::new(f64::from(i % 20), f64::from(i / 20), 0.0)).collect();
         let faces: Vec<[u32; 3]> = (0..379).filter(|i| i % 20 != 19).map(|i| [i, i + 1, i + 20]).collect();
         for (faces, positions) in [(&faces[..], &positions[..]), (&[], &[DVec3::ZERO; 100]), (&[], &[])] {
-            let mut order = order(&Rings::new(faces, positions.len()), positions);
-            order.sort_unstable();
-            assert_eq!(order, (0..positions.len() as u32).collect::<Vec<_>>());
+            let rings = Rings::new(faces, positions.len());
+            for mut order in [order(&rings, positions), dissect(&rings, positions)] {
+                order.sort_unstable();
+                assert_eq!(order, (0..positions.len() as u32).collect::<Vec<_>>());
+            }
         }
     }
 }
