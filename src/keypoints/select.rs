@@ -98,11 +98,7 @@ pub fn fit_all(sequence: &Sequence, points: &[u32], parameters: &Parameters) -> 
     Ok(full.fitted(weights))
 }
 
-fn prepared<'a>(
-    sequence: &Sequence,
-    surface: &'a Surface,
-    parameters: &Parameters,
-) -> Result<Full<'a>, KeyPointError> {
+fn prepared<'a>(sequence: &Sequence, surface: &'a Surface, parameters: &Parameters) -> Result<Full<'a>, KeyPointError> {
     let gammas = [parameters.gamma_rotation, parameters.gamma_shear];
     let features = surface.features(&poses::spread(surface), gammas);
     Ok(Full::new(sequence, surface, features, parameters.fit())?)
