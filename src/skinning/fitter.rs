@@ -26,7 +26,7 @@ use serde::{Deserialize, Serialize};
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(default, rename_all = "kebab-case")]
 pub struct FitParameters {
-    /// λ of Eq. 5, the share of rigidity (paper: 0.5), for a mesh of [`LIKE_VERTICES`] vertices: E_diff is taken as a
+    /// λ of Eq. 5, the share of rigidity (paper: 0.5), for a mesh of `LIKE_VERTICES` vertices: E_diff is taken as a
     /// mean so that a finer mesh weighs no more.
     pub lambda: f64,
     /// How firmly maps are held near rotations where the pose does not say: the weight of a handle's cross over that

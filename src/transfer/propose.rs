@@ -1,7 +1,7 @@
 //! Where the key points of one mesh lie on another, without being told, or told of some of them.
 //!
-//! Both surfaces are thinned out to samples with all distances between them ([`surface`]). A spread of the source's
-//! samples and the points asked for look for their places together ([`consensus`]), from several starts ([`starts`]):
+//! Both surfaces are thinned out to samples with all distances between them (`surface`). A spread of the source's
+//! samples and the points asked for look for their places together (`consensus`), from several starts (`starts`):
 //! the figures laid over each other as they stand, stretched to the same box, turned, or as the given pairs say; the
 //! outcome in which points agree best with each other counts. Given pairs stay as they are and are listened to more.
 //!

@@ -7,7 +7,7 @@ use super::sight::{Eye, Mark};
 use super::skin::Map;
 use glam::Vec3;
 
-/// Numbers that describe a pin: see [`Pin::read`].
+/// Numbers that describe a pin: see `Pin::read`.
 pub const NUMBERS: usize = 8;
 /// Numbers that describe a pin to the shaders.
 pub const FLOATS: usize = 12;

@@ -28,7 +28,7 @@ pub struct Bones {
     pub motions: Vec<Vec<RigidMotion>>,
 }
 
-/// Up to [`POSES`] poses that differ most from the reference and from each other, in ascending order.
+/// Up to `POSES` poses that differ most from the reference and from each other, in ascending order.
 pub fn telling_poses(surface: &Surface, poses: &[Vec<DVec3>]) -> Vec<usize> {
     if poses.len() <= POSES {
         return (0..poses.len()).collect();
