@@ -9,12 +9,13 @@ pub const FIRST_PICTURE: f64 = 10.0;
 /// Opens the page and waits until the creature is painted and the paint has come to rest.
 pub fn opened(backend: Backend, screen: Screen, tail: &str) -> Page {
     let mut page = Page::open(backend, screen, tail);
-    page.wait_until(SETTLED, 2.0 * FIRST_PICTURE);
+    page.wait_until(SETTLED, 6.0 * FIRST_PICTURE);
     page
 }
 
 /// Nothing runs and the paint is where it belongs.
-pub const SETTLED: &str = "sinew.ready && sinew.state().parts && !sinew.state().busy && !sinew.state().flowing";
+pub const SETTLED: &str =
+    "sinew.ready && sinew.state().parts && !sinew.state().busy && !sinew.state().flowing && sinew.state().drawn";
 
 fn opens_on_a_painted_creature(backend: Backend, screen: Screen) {
     let mut page = Page::open(backend, screen, "");
@@ -24,7 +25,7 @@ fn opens_on_a_painted_creature(backend: Backend, screen: Screen) {
     let seconds = page.evaluate(first).as_f64().unwrap_or(f64::INFINITY);
     println!("on {}: first picture after {seconds:.2} s, painted after {painted:.2} s", backend.name());
     assert!(seconds < FIRST_PICTURE, "the first picture took {seconds} s");
-    page.wait_until(SETTLED, 10.0);
+    page.wait_until(SETTLED, 20.0);
     let state = page.state();
     assert_eq!(state["backend"], backend.name(), "{state}");
     assert_eq!(state["error"], serde_json::Value::Null, "{state}");

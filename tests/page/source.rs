@@ -13,7 +13,7 @@ fn a_dropped_file_is_painted(backend: Backend) {
     assert_eq!(state["source"]["vertices"], 24 * 12 + 2, "{state}");
     assert_eq!(state["source"]["faces"], 24 * 24, "{state}");
     assert!(state["source"]["poses"].as_u64().is_some_and(|poses| poses > 2), "{state}");
-    page.wait_until(SETTLED, 5.0);
+    page.wait_until(SETTLED, 15.0);
     page.rest(0.3);
     let canvas = page.picture_of("canvas", "hinge");
     assert!(canvas.hues(0.001) >= 2, "the canvas has only {} hues", canvas.hues(0.001));
