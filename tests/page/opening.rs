@@ -82,10 +82,11 @@ fn the_visitors_wishes_are_respected() {
     page.wait_until("sinew.ready && !sinew.state().busy", FIRST_PICTURE);
     let state = page.state();
     assert_eq!((&state["playing"], &state["flowing"]), (&false.into(), &false.into()), "nothing moves: {state}");
-    page.rest(0.3);
+    page.wait_until("sinew.state().drawn", 20.0);
     let light = page.screenshot("light").brightness();
     page.prefer(&[("prefers-color-scheme", "dark"), ("prefers-reduced-motion", "reduce")]);
     page.rest(0.5);
+    page.wait_until("sinew.state().drawn", 20.0);
     let dark = page.screenshot("dark").brightness();
     assert!(light > 150.0 && dark < 100.0, "light {light}, dark {dark}");
 }
@@ -99,6 +100,7 @@ fn a_lost_device_is_survived() {
     page.evaluate("lost.getContext('webgl2').getExtension('WEBGL_lose_context').loseContext()");
     page.wait_until("!lost.isConnected && document.querySelector('#stage canvas')", 5.0);
     page.rest(1.0);
+    page.wait_until("sinew.state().drawn", 20.0);
     let canvas = page.picture_of("canvas", "after-a-loss");
     assert!(canvas.hues(0.001) >= 3, "the new canvas has only {} hues", canvas.hues(0.001));
     let after = page.state();
