@@ -11,6 +11,9 @@ use crate::weights::WeightsError;
 const WORTH: f64 = 1e-6;
 const ROUNDING: f64 = 1e-12;
 
+/// How often every point may be replaced; three times are many.
+const ROUNDS: usize = 20;
+
 /// What the letter finds.
 pub struct Found {
     /// Vertices of the sequence, in the order chosen.
@@ -40,7 +43,7 @@ pub fn search(
         (groups, error) = accepted(full, &points)?;
         steps.push(Step { tried, chosen: best.vertex, error: best.error });
     }
-    loop {
+    for _ in 0..ROUNDS {
         let before = replacements.len();
         for place in 0..points.len() {
             let mut others = points.clone();
@@ -59,9 +62,10 @@ pub fn search(
             }
         }
         if replacements.len() == before {
-            return Ok(Some(Found { points, steps, replacements }));
+            break;
         }
     }
+    Ok(Some(Found { points, steps, replacements }))
 }
 
 /// The groups of a set and its error with them.

@@ -72,8 +72,8 @@ impl<'a> Search<'a> {
         if !coarse.candidates.is_empty() {
             let field = search.field(0, &[], None);
             let groups = vec![0; coarse.energy.len()];
-            search.set = Set { members: vec![0], fields: vec![field], rough: vec![false], groups, error: 0.0 };
-            search.regroup();
+            let set = Set { members: vec![0], fields: vec![field], rough: vec![false], groups, error: 0.0 };
+            search.set = search.regrouped(set);
             search.probes = (0..coarse.candidates.len()).map(|c| search.field(c, &[0], None)).collect();
         }
         search
@@ -84,7 +84,7 @@ impl<'a> Search<'a> {
         let base = self.set.clone();
         let probes = self.probes.clone();
         let (best, tried) = self.sieve(&base, &probes, ADDING, f64::INFINITY, keep_going)?;
-        self.accept(best?, probes);
+        self.accept(best.map(|best| self.regrouped(best))?, probes);
         Some(tried)
     }
 
@@ -104,7 +104,8 @@ impl<'a> Search<'a> {
         probes[gone] = bump;
         let limit = self.set.error * (1.0 + HOPELESS);
         let (best, _) = self.sieve(&base, &probes, REPLACING, limit, keep_going)?;
-        match best {
+        // New groups change the error a little: only what is better with them is an improvement.
+        match best.map(|best| self.regrouped(best)) {
             Some(mut best) if best.error < self.set.error * (1.0 - WORTH) - ROUNDING => {
                 // The new point takes the place of the old one.
                 best.members[place..].rotate_right(1);
@@ -162,15 +163,9 @@ impl<'a> Search<'a> {
         }
         self.set = set;
         self.probes = probes;
-        self.regroup();
     }
 
-    /// Groups of the current set (§3.3), and its error with them.
-    fn regroup(&mut self) {
-        let set = std::mem::take(&mut self.set);
-        self.set = self.regrouped(set);
-    }
-
+    /// The set with its own groups (§3.3), and its error with them.
     fn regrouped(&self, mut set: Set) -> Set {
         let handles = self.handles(&set.members);
         set.groups = clusters(&self.weights(&set), &self.coarse.features, &handles, &self.coarse.surface.counts);

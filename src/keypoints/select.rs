@@ -25,6 +25,9 @@ const MEASURED: usize = 1_500;
 /// Points of a mesh that does not move, if nobody says how many.
 const STILL: usize = 12;
 
+/// How often every point may be replaced; three times are many.
+const ROUNDS: usize = 20;
+
 /// A point is worth it, where the curve is to become flat, if it takes this share off the error…
 const STEEP: f64 = 0.04;
 
@@ -235,7 +238,10 @@ fn replace(
 ) -> Result<(), KeyPointError> {
     let count = search.set.members.len();
     let (mut done, mut idle, mut place) = (0.4, 0, 0);
-    while idle < count {
+    for _ in 0..ROUNDS * count {
+        if idle >= count {
+            break;
+        }
         done += (0.75 - done) * 0.02;
         let from = search.set.members[place];
         let better = search.replace(place, &mut || watch.go_on(done)).ok_or(KeyPointError::Cancelled)?;
