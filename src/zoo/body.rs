@@ -17,25 +17,47 @@ pub struct Body {
     pub thinnest: f64,
     /// Half the length of the stretch around a joint in which two bones share the skin, in radii of the limb.
     pub softness: f64,
-    /// How it moves.
-    pub motion: Motion,
-}
-
-/// The poses of a body.
-#[derive(Clone, Copy, Debug)]
-pub struct Motion {
-    /// Seconds in one loop.
-    pub period: f64,
     /// The reference pose.
     pub stance: fn(&Skeleton) -> Vec<Rigid>,
+    /// How it moves; the first is what it does unless told otherwise.
+    pub motions: Vec<Motion>,
+}
+
+/// A loop of poses.
+#[derive(Clone, Copy, Debug)]
+pub struct Motion {
+    /// What people call it.
+    pub name: &'static str,
+    /// Seconds in one loop.
+    pub period: f64,
     /// The pose at a phase of the loop (0 to 1).
     pub gait: fn(&Skeleton, f64) -> Vec<Rigid>,
+    /// Whether the lowest point is put on the ground in every pose; else the poses themselves say how high it is.
+    pub grounded: bool,
+}
+
+/// A motion that stays on the ground.
+pub const fn motion(name: &'static str, period: f64, gait: fn(&Skeleton, f64) -> Vec<Rigid>) -> Motion {
+    Motion { name, period, gait, grounded: true }
+}
+
+/// A motion that may leave the ground.
+pub const fn airborne(name: &'static str, period: f64, gait: fn(&Skeleton, f64) -> Vec<Rigid>) -> Motion {
+    Motion { name, period, gait, grounded: false }
 }
 
 impl Body {
     /// A body without bones.
-    pub fn new(thinnest: f64, motion: Motion) -> Self {
-        Self { skeleton: Skeleton::default(), limbs: Vec::new(), grounded: true, thinnest, softness: 0.9, motion }
+    pub fn new(thinnest: f64, motions: &[Motion]) -> Self {
+        Self {
+            skeleton: Skeleton::default(),
+            limbs: Vec::new(),
+            grounded: true,
+            thinnest,
+            softness: 0.9,
+            stance: as_meshed,
+            motions: motions.to_vec(),
+        }
     }
 
     /// Adds a bone from `joint` to `end`; `parent` is the name of the bone that carries it.

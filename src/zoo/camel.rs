@@ -1,6 +1,6 @@
 //! The dromedary: 1.85 tall at the shoulder, long-legged and long-necked, facing +z.
 
-use super::body::{Body, Motion, as_meshed};
+use super::body::{Body, motion};
 use super::gait::{Curve, Step};
 use super::limb::{Station, station};
 use super::quadruped::{Joints, Walk, mid, quadruped_bones};
@@ -49,7 +49,7 @@ const HIND: &[Station] = &[
 
 /// The camel's bones, limbs and motion.
 pub fn camel() -> Body {
-    let mut body = Body::new(0.034, Motion { period: 1.5, stance: as_meshed, gait });
+    let mut body = Body::new(0.034, &[motion("walk", 1.5, gait)]);
     quadruped_bones(&mut body, &JOINTS);
     body.limb(
         &["trunk"],
@@ -76,8 +76,8 @@ pub fn camel() -> Body {
         ],
     );
     body.limb(&["trunk"], 0.08, &[mid(1.02, 0.28, 0.07, 1.0), mid(1.02, 0.40, 0.07, 1.0)]);
-    body.limbs(&["* upper arm", "* forearm", "* fore cannon", "* fore hoof"], 0.10, FORE);
-    body.limbs(&["* thigh", "* gaskin", "* hind cannon", "* hind hoof"], 0.10, HIND);
+    body.limbs(&["* upper arm", "* forearm", "* fore cannon", "* fore foot"], 0.10, FORE);
+    body.limbs(&["* thigh", "* gaskin", "* hind cannon", "* hind foot"], 0.10, HIND);
     body.limbs(
         &["* gaskin", "* hind cannon"],
         0.05,
@@ -181,8 +181,8 @@ const PACE: Walk = Walk {
     drop: 0.03,
     nod: 1.2,
     tail: 1.0,
-    fore_sole: [0.41, 0.59],
-    hind_sole: [-0.61, -0.44],
+    fore_sole: [-0.02, 0.16],
+    hind_sole: [-0.01, 0.16],
 };
 
 fn gait(skeleton: &Skeleton, phase: f64) -> Vec<Rigid> {

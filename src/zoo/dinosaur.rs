@@ -2,7 +2,7 @@
 //!
 //! The long tail balances the heavy head across the hips; the arms are small, the legs strong, and it walks on its toes.
 
-use super::body::{Body, Motion, Turns, as_meshed};
+use super::body::{Body, Turns, motion};
 use super::gait::{Curve, Leg, Step, pitch, roll, wave, yaw};
 use super::limb::{Station, station};
 use super::quadruped::mid;
@@ -36,7 +36,7 @@ const LEG_STATIONS: &[Station] = &[
 
 /// The dinosaur's bones, limbs and motion.
 pub fn dinosaur() -> Body {
-    let mut body = Body::new(0.036, Motion { period: 1.3, stance: as_meshed, gait });
+    let mut body = Body::new(0.036, &[motion("walk", 1.3, gait)]);
     bones(&mut body);
     // The trunk, deepest at the belly, and the curve of the neck.
     body.limb(
@@ -172,7 +172,7 @@ fn gait(skeleton: &Skeleton, phase: f64) -> Vec<Rigid> {
     // The left foot meets the ground at phase 0; the body is lowest a little later, twice a loop.
     let stride = wave(phase + 0.25);
     let beat = 2.0 * phase;
-    let shift = DVec3::new(0.03 * wave(phase + 0.02), -0.045 - 0.018 * wave(beat + 0.19), 0.0);
+    let shift = skeleton.stride * DVec3::new(0.03 * wave(phase + 0.02), -0.045 - 0.018 * wave(beat + 0.19), 0.0);
     turns.set("pelvis", yaw(-5.0 * stride) * roll(3.0 * wave(phase)) * pitch(1.2 * wave(beat)));
     turns.set("chest", yaw(8.0 * stride) * roll(-3.5 * wave(phase)) * pitch(-1.5 * wave(beat)));
     // The head is thrust forwards with every step and held level.
@@ -195,7 +195,7 @@ fn gait(skeleton: &Skeleton, phase: f64) -> Vec<Rigid> {
         if let (Some(upper), Some(lower), middle, Some(foot)) =
             (bone("thigh"), bone("shank"), bone("metatarsus"), bone("toes"))
         {
-            let leg = Leg { upper, lower, middle, foot, sole: [-0.05, 0.29] };
+            let leg = Leg { upper, lower, middle, foot, sole: [-0.07, 0.27] };
             STEP.place(&leg, phase - own, skeleton, shift, &mut turns.turns);
         }
     }

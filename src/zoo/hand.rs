@@ -3,7 +3,7 @@
 //! It lies on its edge and points to +z, the thumb up and the palm to its right (−x). One after the other the fingers
 //! curl into the palm and open again.
 
-use super::body::{Body, Motion, Turns};
+use super::body::{Body, Turns, motion};
 use super::gait::{Curve, pitch, wave, yaw};
 use super::limb::{Station, station};
 use super::skeleton::{Rigid, Skeleton};
@@ -77,7 +77,8 @@ const GRASP: Curve = Curve(&[(0.0, 0.0), (0.26, 1.0), (0.44, 1.0), (0.70, 0.0)])
 
 /// The hand's bones, limbs and motion.
 pub fn hand() -> Body {
-    let mut body = Body::new(0.05, Motion { period: 2.4, stance, gait });
+    let mut body = Body::new(0.05, &[motion("grasp", 2.4, gait)]);
+    body.stance = stance;
     body.grounded = false;
     body.bone("forearm", None, [0.0, 0.21, -0.85], [0.0, 0.30, 0.0]);
     body.bone("palm", Some("forearm"), [0.0, 0.305, 0.0], [0.0, 0.33, 0.45]);

@@ -1,6 +1,6 @@
 //! The horse: 1.6 tall at the withers, as long as it is tall, facing +z.
 
-use super::body::{Body, Motion, as_meshed};
+use super::body::{Body, motion};
 use super::gait::{Curve, Step};
 use super::limb::{Station, station};
 use super::quadruped::{Joints, Walk, mid, quadruped_bones};
@@ -49,7 +49,7 @@ const HIND: &[Station] = &[
 
 /// The horse's bones, limbs and motion.
 pub fn horse() -> Body {
-    let mut body = Body::new(0.030, Motion { period: 1.15, stance: as_meshed, gait });
+    let mut body = Body::new(0.030, &[motion("walk", 1.15, gait)]);
     quadruped_bones(&mut body, &JOINTS);
     body.limb(
         &["trunk"],
@@ -70,8 +70,8 @@ pub fn horse() -> Body {
         0.16,
         &[mid(1.40, 0.02, 0.08, 0.6), mid(1.455, 0.26, 0.115, 0.5), mid(1.44, 0.46, 0.14, 0.6)],
     );
-    body.limbs(&["* upper arm", "* forearm", "* fore cannon", "* fore hoof"], 0.10, FORE);
-    body.limbs(&["* thigh", "* gaskin", "* hind cannon", "* hind hoof"], 0.10, HIND);
+    body.limbs(&["* upper arm", "* forearm", "* fore cannon", "* fore foot"], 0.10, FORE);
+    body.limbs(&["* thigh", "* gaskin", "* hind cannon", "* hind foot"], 0.10, HIND);
     // Point of the hock, and the tendon above it.
     body.limbs(
         &["* gaskin", "* hind cannon"],
@@ -192,8 +192,8 @@ const WALK: Walk = Walk {
     drop: 0.022,
     nod: 1.0,
     tail: 1.0,
-    fore_sole: [0.48, 0.60],
-    hind_sole: [-0.65, -0.53],
+    fore_sole: [0.015, 0.135],
+    hind_sole: [0.02, 0.14],
 };
 
 fn gait(skeleton: &Skeleton, phase: f64) -> Vec<Rigid> {

@@ -19,6 +19,7 @@ pub mod landmarks;
 pub mod limb;
 pub mod mesher;
 pub mod person;
+pub mod proportions;
 pub mod quadruped;
 pub mod skeleton;
 pub mod snake;
@@ -29,7 +30,7 @@ use crate::sequence::{Pose, Sequence};
 pub use correspondence::correspondences;
 pub use landmarks::{landmark_pairs, landmarks};
 
-use body::Body;
+use body::{Body, Motion};
 use glam::DVec3;
 use skeleton::{Rigid, Skeleton};
 use weights::{Binder, Weights};
@@ -57,6 +58,9 @@ pub struct Creature {
 }
 
 /// What to make.
+///
+/// Proportions are 1 for the creature as it was designed and are brought into 0.5 to 2; what a creature does not have
+/// is not changed.
 #[derive(Clone, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
 #[serde(default, rename_all = "kebab-case")]
 pub struct Recipe {
@@ -68,11 +72,40 @@ pub struct Recipe {
     pub poses: usize,
     /// Every vertex follows exactly one bone, instead of a smooth blend.
     pub exact: bool,
+    /// What it does: one of its [`motions`]; empty for the first of them.
+    pub motion: String,
+    /// Size of everything (0.01 to 100).
+    pub size: f64,
+    /// How thick body and limbs are.
+    pub build: f64,
+    /// Size of the head.
+    pub head: f64,
+    /// Length of the neck.
+    pub neck: f64,
+    /// Length of the legs.
+    pub legs: f64,
+    /// Length of arms or wings.
+    pub arms: f64,
+    /// Length of the tail.
+    pub tail: f64,
 }
 
 impl Default for Recipe {
     fn default() -> Self {
-        Self { name: "horse".into(), faces: 12_000, poses: 24, exact: false }
+        Self {
+            name: "horse".into(),
+            faces: 12_000,
+            poses: 24,
+            exact: false,
+            motion: String::new(),
+            size: 1.0,
+            build: 1.0,
+            head: 1.0,
+            neck: 1.0,
+            legs: 1.0,
+            arms: 1.0,
+            tail: 1.0,
+        }
     }
 }
 
@@ -93,11 +126,14 @@ pub fn title(name: &str) -> &str {
     }
 }
 
-/// Makes a creature; `None` if there is none of that name.
-///
-/// The number of faces is brought into 1,000 to 1,000,000 and the number of poses into 1 to 240.
-pub fn make(recipe: &Recipe) -> Option<Creature> {
-    let (plan, body) = match recipe.name.as_str() {
+/// The names of the motions of a creature, the usual one first; empty if there is no such creature.
+pub fn motions(name: &str) -> Vec<&'static str> {
+    body(name).map_or(Vec::new(), |(_, body)| body.motions.iter().map(|motion| motion.name).collect())
+}
+
+/// The body plan and the body of a creature.
+fn body(name: &str) -> Option<(&'static str, Body)> {
+    Some(match name {
         "horse" => ("quadruped", horse::horse()),
         "camel" => ("quadruped", camel::camel()),
         "person" => ("biped", person::person()),
@@ -106,38 +142,63 @@ pub fn make(recipe: &Recipe) -> Option<Creature> {
         "snake" => ("snake", snake::snake()),
         "hand" => ("hand", hand::hand()),
         _ => return None,
-    };
-    build(recipe, plan, &body)
+    })
 }
 
-fn build(recipe: &Recipe, plan: &'static str, body: &Body) -> Option<Creature> {
-    let faces = recipe.faces.clamp(1_000, 1_000_000);
-    let poses = recipe.poses.clamp(1, 240);
+/// Makes a creature; `None` if there is none of that name or if it has no such motion.
+///
+/// The number of faces is brought into 1,000 to 1,000,000 and the number of poses into 1 to 240.
+pub fn make(recipe: &Recipe) -> Option<Creature> {
+    let (plan, mut body) = body(&recipe.name)?;
+    proportions::reshape(&mut body, recipe);
+    let motion = match recipe.motion.as_str() {
+        "" => *body.motions.first()?,
+        name => *body.motions.iter().find(|motion| motion.name == name)?,
+    };
+    build(recipe, plan, &body, &motion)
+}
+
+fn build(recipe: &Recipe, plan: &'static str, body: &Body, motion: &Motion) -> Option<Creature> {
     let field = field::Field::new(&body.limbs, body.grounded);
-    let (made, faces) = mesher::mesh(&field, faces, body.thinnest)?;
+    let (made, faces) = mesher::mesh(&field, recipe.faces.clamp(1_000, 1_000_000), body.thinnest)?;
     let binder = Binder::new(&body.limbs, &body.skeleton, body.softness);
     let weights: Vec<Weights> =
         made.iter().map(|&p| if recipe.exact { vec![(binder.exact(p), 1.0)] } else { binder.smooth(p) }).collect();
     let labels = faces.iter().map(|corners| label(corners.map(|v| &weights[v as usize]))).collect();
-    let motion = &body.motion;
-    let reference = skin(&made, &weights, &(motion.stance)(&body.skeleton));
-    let poses = (0..poses)
-        .map(|i| {
-            let phase = i as f64 / poses as f64;
-            let time = phase * motion.period;
-            let positions = grounded(skin(&made, &weights, &(motion.gait)(&body.skeleton, phase)));
-            Pose { name: format!("{time:.3} s"), time, positions }
-        })
-        .collect();
+    let reference = skin(&made, &weights, &(body.stance)(&body.skeleton));
+    let pose = |phase: f64| {
+        let posed = skin(&made, &weights, &(motion.gait)(&body.skeleton, phase));
+        if motion.grounded { grounded(posed) } else { posed }
+    };
+    let poses = poses(recipe, motion.period, pose);
+    let scale = proportions::size(recipe);
+    let larger = |points: Vec<DVec3>| points.into_iter().map(|p| scale * p).collect();
+    let mut skeleton = body.skeleton.clone();
+    for bone in &mut skeleton.bones {
+        bone.joint *= scale;
+        bone.end *= scale;
+    }
     Some(Creature {
-        sequence: Sequence::new(recipe.name.clone(), faces, reference, poses).ok()?,
+        sequence: Sequence::new(recipe.name.clone(), faces, larger(reference), poses).ok()?,
         labels,
-        parts: body.skeleton.bones.iter().map(|bone| bone.name.clone()).collect(),
-        skeleton: body.skeleton.clone(),
+        parts: skeleton.bones.iter().map(|bone| bone.name.clone()).collect(),
+        skeleton,
         weights,
         plan,
-        made,
+        made: larger(made),
     })
+}
+
+/// The poses of a loop of so many seconds; `pose` gives the positions at a phase, before they are enlarged.
+fn poses(recipe: &Recipe, period: f64, pose: impl Fn(f64) -> Vec<DVec3>) -> Vec<Pose> {
+    let (count, scale) = (recipe.poses.clamp(1, 240), proportions::size(recipe));
+    let one = |i: usize| {
+        let phase = i as f64 / count as f64;
+        let time = phase * period;
+        let positions = pose(phase).into_iter().map(|p| scale * p).collect();
+        Pose { name: format!("{time:.3} s"), time, positions }
+    };
+    (0..count).map(one).collect()
 }
 
 /// Linear blend skinning.

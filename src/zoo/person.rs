@@ -4,7 +4,7 @@
 //! then lowers the arms or raises them. Both variants are one mesh, vertex by vertex, so the true answer of every
 //! transfer between them is known.
 
-use super::body::{Body, Motion, Turns};
+use super::body::{Body, Turns, motion};
 use super::gait::{Curve, Leg, Step, pitch, roll, wave, yaw};
 use super::limb::{Station, station};
 use super::skeleton::{Rigid, Skeleton};
@@ -55,7 +55,8 @@ fn arm(along: f64, forward: f64) -> [f64; 3] {
 }
 
 fn build(stance: fn(&Skeleton) -> Vec<Rigid>) -> Body {
-    let mut body = Body::new(0.022, Motion { period: 1.1, stance, gait });
+    let mut body = Body::new(0.022, &[motion("walk", 1.1, gait)]);
+    body.stance = stance;
     body.bone("pelvis", None, [0.0, 0.96, 0.0], [0.0, 1.08, 0.0]);
     body.bone("chest", Some("pelvis"), [0.0, 1.09, 0.0], [0.0, 1.44, -0.01]);
     body.bone("head", Some("chest"), [0.0, 1.48, -0.012], [0.0, 1.75, 0.02]);
@@ -207,7 +208,8 @@ fn gait(skeleton: &Skeleton, phase: f64) -> Vec<Rigid> {
     let mut turns = Turns::new(skeleton);
     let stride = wave(phase + 0.25);
     // The left foot meets the ground at phase 0: the pelvis turns left forwards, the chest against it.
-    let shift = DVec3::new(0.018 * wave(phase + 0.02), -0.019 - 0.015 * wave(2.0 * phase + 0.19), 0.0);
+    let shift =
+        skeleton.stride * DVec3::new(0.018 * wave(phase + 0.02), -0.019 - 0.015 * wave(2.0 * phase + 0.19), 0.0);
     turns.set("pelvis", yaw(-6.0 * stride) * roll(2.5 * wave(phase)));
     turns.set("chest", yaw(13.0 * stride) * roll(-3.0 * wave(phase)) * pitch(2.5));
     turns.set("head", yaw(-7.0 * stride) * pitch(-2.0 + 3.0 * wave(2.0 * phase + 0.1)));
@@ -222,7 +224,7 @@ fn gait(skeleton: &Skeleton, phase: f64) -> Vec<Rigid> {
         turns.set(&format!("{side} hand"), hang.inverse() * pitch(wrist - 4.0) * hang);
         let bone = |name: &str| skeleton.find(&format!("{side} {name}"));
         if let (Some(upper), Some(lower), Some(foot)) = (bone("thigh"), bone("shank"), bone("foot")) {
-            let leg = Leg { upper, lower, middle: None, foot, sole: [-0.085, 0.165] };
+            let leg = Leg { upper, lower, middle: None, foot, sole: [-0.055, 0.195] };
             let landing = if sign > 0.0 { 0.0 } else { 0.5 };
             STEP.place(&leg, phase - landing, skeleton, shift, &mut turns.turns);
         }

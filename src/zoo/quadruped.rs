@@ -24,9 +24,9 @@ pub struct Joints {
 }
 
 /// The bones of a fore leg, from the trunk down.
-pub const FORE: [&str; 4] = ["* upper arm", "* forearm", "* fore cannon", "* fore hoof"];
+pub const FORE: [&str; 4] = ["* upper arm", "* forearm", "* fore cannon", "* fore foot"];
 /// The bones of a hind leg, from the trunk down.
-pub const HIND: [&str; 4] = ["* thigh", "* gaskin", "* hind cannon", "* hind hoof"];
+pub const HIND: [&str; 4] = ["* thigh", "* gaskin", "* hind cannon", "* hind foot"];
 
 /// A station in the middle plane, at `y, z`.
 pub const fn mid(y: f64, z: f64, radius: f64, flat: f64) -> Station {
@@ -68,7 +68,7 @@ pub struct Walk {
     pub nod: f64,
     /// How much the tail swings.
     pub tail: f64,
-    /// Back and front end of the fore soles (z).
+    /// Back and front end of the fore soles, before the joint of the foot (z).
     pub fore_sole: [f64; 2],
     /// The same for the hind soles.
     pub hind_sole: [f64; 2],
@@ -80,7 +80,7 @@ impl Walk {
         let mut turns = Turns::new(skeleton);
         // The body is lowest when a foot of either end has just landed, twice a loop; it rolls once.
         let beat = 2.0 * (phase - self.fore[0]);
-        let shift = DVec3::new(0.012 * wave(phase), -self.drop - 0.008 * wave(beat + 0.25), 0.0);
+        let shift = skeleton.stride * DVec3::new(0.012 * wave(phase), -self.drop - 0.008 * wave(beat + 0.25), 0.0);
         turns.set("trunk", roll(1.6 * wave(phase - 0.1)) * pitch(0.8 * wave(beat)));
         // The head goes down as a fore foot bears weight.
         let nod = self.nod * wave(beat + 0.02);

@@ -1,6 +1,6 @@
 //! The snake: 3 long, its head at +z, slithering.
 
-use super::body::{Body, Motion, Turns};
+use super::body::{Body, Turns, motion};
 use super::gait::yaw;
 use super::limb::{Station, station};
 use super::skeleton::{Rigid, Skeleton};
@@ -32,7 +32,8 @@ const BEND: f64 = 27.0;
 
 /// The snake's bones, limbs and motion.
 pub fn snake() -> Body {
-    let mut body = Body::new(0.024, Motion { period: 1.6, stance, gait });
+    let mut body = Body::new(0.024, &[motion("slither", 1.6, gait)]);
+    body.stance = stance;
     // A body without elbows.
     body.softness = 1.8;
     body.bone("head", None, [0.0, 0.09, NECK], [0.0, 0.08, 1.52]);
