@@ -1,6 +1,7 @@
 //! A body: bones, the limbs around them, and how they move. What a creature's own file describes.
 
 use super::limb::{Limb, Station};
+use super::pieces::Piece;
 use super::skeleton::{Rigid, Skeleton};
 use glam::{DQuat, DVec3};
 
@@ -11,6 +12,8 @@ pub struct Body {
     pub skeleton: Skeleton,
     /// The limbs in the order in which they are joined.
     pub limbs: Vec<Limb>,
+    /// Rigid pieces that stand in for the limbs, if there are any.
+    pub pieces: Vec<Piece>,
     /// Whether it stands on flat soles at y = 0.
     pub grounded: bool,
     /// Thickness of its thinnest limbs.
@@ -52,6 +55,7 @@ impl Body {
         Self {
             skeleton: Skeleton::default(),
             limbs: Vec::new(),
+            pieces: Vec::new(),
             grounded: true,
             thinnest,
             softness: 0.9,
@@ -96,6 +100,20 @@ impl Body {
         let left = Limb::new(left, blend, pair, direction.normalize(), stations.to_vec());
         let right = left.mirrored(self.numbers(bones, "right"));
         self.limbs.extend([left, right]);
+    }
+
+    /// Makes everything so many times larger, soles and motions excepted: those are given for the final size.
+    pub fn enlarge(&mut self, scale: f64) {
+        for bone in &mut self.skeleton.bones {
+            bone.joint *= scale;
+            bone.end *= scale;
+        }
+        for limb in &mut self.limbs {
+            let larger = |s: &Station| Station { at: scale * s.at, radius: scale * s.radius, flat: s.flat };
+            let stations = limb.stations.iter().map(larger).collect();
+            *limb = Limb::new(limb.bones.clone(), scale * limb.blend, limb.pair, limb.direction, stations);
+        }
+        self.thinnest *= scale;
     }
 
     fn numbers(&self, bones: &[&str], side: &str) -> Vec<u32> {

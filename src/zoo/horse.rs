@@ -1,9 +1,9 @@
 //! The horse: 1.6 tall at the withers, as long as it is tall, facing +z.
 
-use super::body::{Body, motion};
+use super::body::{Body, airborne, motion};
 use super::gait::{Curve, Step};
 use super::limb::{Station, station};
-use super::quadruped::{Joints, Walk, mid, quadruped_bones};
+use super::quadruped::{Joints, Walk, collapse_folded, galloping, mid, quadruped_bones};
 use super::skeleton::{Rigid, Skeleton};
 use glam::DVec3;
 
@@ -49,7 +49,10 @@ const HIND: &[Station] = &[
 
 /// The horse's bones, limbs and motion.
 pub fn horse() -> Body {
-    let mut body = Body::new(0.030, &[motion("walk", 1.15, gait)]);
+    let mut body = Body::new(
+        0.030,
+        &[motion("walk", 1.15, gait), airborne("gallop", 0.52, gallop), motion("collapse", 3.2, collapse_folded)],
+    );
     quadruped_bones(&mut body, &JOINTS);
     body.limb(
         &["trunk"],
@@ -190,6 +193,10 @@ const WALK: Walk = Walk {
         foot: Curve(&[(0.0, -4.0), (0.06, 0.0), (0.46, 0.0), (0.62, 28.0), (0.72, 46.0), (0.88, 10.0), (0.96, -6.0)]),
     },
     drop: 0.022,
+    beats: 2.0,
+    rise: 0.008,
+    pitch: 0.8,
+    roll: 1.6,
     nod: 1.0,
     tail: 1.0,
     fore_sole: [0.015, 0.135],
@@ -198,4 +205,10 @@ const WALK: Walk = Walk {
 
 fn gait(skeleton: &Skeleton, phase: f64) -> Vec<Rigid> {
     WALK.pose(skeleton, phase)
+}
+
+const GALLOP: Walk = galloping(0.95, 0.24, 0.05, [0.015, 0.135], [0.02, 0.14]);
+
+fn gallop(skeleton: &Skeleton, phase: f64) -> Vec<Rigid> {
+    GALLOP.pose(skeleton, phase)
 }

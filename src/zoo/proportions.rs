@@ -70,13 +70,23 @@ pub fn reshape(body: &mut Body, recipe: &Recipe) {
         Limb::new(limb.bones.clone(), limb.blend, limb.pair, limb.direction, stations)
     });
     let limbs = limbs.collect();
+    let stride = old.stride;
     for bone in &mut bones {
         bone.joint += up;
         bone.end += up;
     }
     body.thinnest *= proportion(recipe.build).min(1.0) * proportion(recipe.head).min(1.0);
+    body.pieces = body
+        .pieces
+        .iter()
+        .map(|piece| {
+            let (bone, change) = (piece.bone as usize, &changes[piece.bone as usize]);
+            let at = bones[bone].joint + change.apply(piece.centre() - old.bones[bone].joint);
+            piece.moved(at, change.girth, change.axis, change.stretch)
+        })
+        .collect();
     body.limbs = limbs;
-    body.skeleton = Skeleton { bones, stride: proportion(recipe.legs) };
+    body.skeleton = Skeleton { bones, stride: stride * proportion(recipe.legs) };
 }
 
 /// The bone of a limb that a point beside it belongs to.
