@@ -471,6 +471,16 @@ export class Stage extends EventTarget {
     return this.view?.group_colours() ?? new Uint8Array();
   }
 
+  /** Where some vertices are now, three coordinates each; nothing without a GPU. @param {Uint32Array} numbers */
+  vertices(numbers) {
+    return this.kept.mesh && this.view ? this.view.vertices(numbers) : new Float32Array();
+  }
+
+  /** Where points are on the canvas: x, y and depth each. @param {Float32Array} points three coordinates each */
+  project(points) {
+    return this.view ? this.view.project(points) : new Float32Array(points.length);
+  }
+
   /** What lies under a point of the canvas: `[face, b0, b1, b2, x, y, z]`. */
   pick(x, y) {
     return this.kept.mesh && this.view ? this.view.pick(x, y) : undefined;
