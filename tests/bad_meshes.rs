@@ -131,7 +131,8 @@ fn read_back(mesh: &Sequence, bytes: Vec<u8>) -> Outcome {
     let file = File { name: "made.glb".into(), bytes };
     let rounded = |p: &DVec3| p.as_vec3().as_dvec3();
     let points: Vec<DVec3> = mesh.reference().iter().map(rounded).collect();
-    let nothing = mesh.faces().iter().all(|face| face.windows(2).any(|w| points[w[0] as usize] == points[w[1] as usize]));
+    let nothing =
+        mesh.faces().iter().all(|face| face.windows(2).any(|w| points[w[0] as usize] == points[w[1] as usize]));
     sentence(open(&[file], &Options::default()), nothing).map(|_| ())
 }
 
@@ -272,8 +273,7 @@ fn proposals() {
     let partner = healthy();
     on_all("proposals", |mesh| {
         for (source, target) in [(mesh, &partner), (&partner, mesh)] {
-            let result =
-                Proposer::new(source.faces(), source.reference(), target.faces(), target.reference());
+            let result = Proposer::new(source.faces(), source.reference(), target.faces(), target.reference());
             let Some(proposer) = sentence(result, without_faces(mesh))? else { continue };
             let points = far_apart(source, 5);
             let mut known = vec![None; points.len()];

@@ -66,7 +66,8 @@ impl<'a> Chart<'a> {
         let reference = mesh.reference;
         let exists = |face: &[u32; 3]| face.iter().all(|&v| (v as usize) < reference.len());
         let kept = |face: &[u32; 3]| if exists(face) { *face } else { [0; 3] };
-        let given: Vec<[u32; 3]> = if reference.is_empty() { Vec::new() } else { mesh.faces.iter().map(kept).collect() };
+        let given: Vec<[u32; 3]> =
+            if reference.is_empty() { Vec::new() } else { mesh.faces.iter().map(kept).collect() };
         let mut used = vec![false; reference.len()];
         given.iter().flatten().for_each(|&v| used[v as usize] = true);
         let scale = scale(reference, &used);
