@@ -62,6 +62,10 @@ fn assert_sound(sequence: &Sequence, result: &KeyPoints) {
     for v in 0..vertices {
         assert!((result.weights.row(v).iter().sum::<f64>() - 1.0).abs() < 1e-9, "row {v}");
     }
+    for (fit, rounds) in result.fits.iter().zip(&result.rounds) {
+        assert_eq!(rounds.len(), fit.energies.len(), "a round has an energy");
+        assert!(rounds.last() == Some(&fit.maps) && rounds.iter().all(|maps| maps.len() == count));
+    }
     for fit in &result.fits {
         assert_eq!(fit.maps.len(), count);
         assert!(fit.maps.iter().all(|map| map.is_finite()) && fit.error.is_finite());

@@ -1,15 +1,17 @@
 /**
  * The state of the page and what can be done to it. Everything that shows something listens to the events named
  * after what changed: `source`, `result`, `parameters`, `step`, `view`, `busy`, `notice`, `panel`, `link`, `doc`
- * (what can be undone), `points` (what follows from the key points), `target`, `motion` (of the target), `selected`.
+ * (what can be undone), `painted` (the figures), `place` (in a stage), `points` (what follows from the key points), `target`,
+ * `motion` (of the target), `selected`.
  *
  * What can be undone is one small immutable object, {@link Doc}; all else follows from it or is only looked at.
  */
 import { collect, fetchSource } from './files.js';
 import { History } from './history.js';
 import { KeyPoints, MOST_POINTS } from './keypoints.js';
+import { placeIn, viewNow } from './stages.js';
 import { PARTS_VIEW, stepNamed } from './steps/index.js';
-import { KEY_POINT_VIEWS } from './steps/point-views.js';
+import { PAIR_VIEWS } from './steps/point-views.js';
 import { Target } from './target.js';
 import { Transfer } from './transfer.js';
 import { Work } from './work.js';
@@ -48,9 +50,12 @@ export class App extends EventTarget {
     this.step = 'parts';
     /** The view of each step that is looked at. */
     this.views = {};
-    /** Which feature and which round of clustering the stage views show. */
-    this.feature = 0;
-    this.round = 0;
+    /** Where in a stage one is, by its view: a feature, a merge, a round. */
+    this.places = {};
+    /** The face that is looked at closely; −1: one that the stage finds telling. */
+    this.face = -1;
+    /** A moment that a stage holds the source at, whatever the timeline says; null: none. */
+    this.frozen = null;
     /** @type {null|{kind: 'zoo', recipe: object}|{kind: 'files'|'src', files: {name: string, blob: Blob}[], options: object, url?: string}} */
     this.source = null;
     this.sequence = null;
@@ -111,6 +116,11 @@ export class App extends EventTarget {
   get view() {
     const { id, view } = owner(this.step);
     return this.views[id] ?? view;
+  }
+
+  /** Where one is in the stage that is shown. */
+  get place() {
+    return placeIn(this, viewNow(this));
   }
 
   // What can be undone.
@@ -203,7 +213,7 @@ export class App extends EventTarget {
     if (!sequence) return false;
     this.engine.keep(sequence);
     this.work.drop('points', 'search', 'pairs', 'motion', 'export');
-    Object.assign(this, { source, sequence, result: null, feature: 0, round: 0, notice: null, selected: -1 });
+    Object.assign(this, { source, sequence, result: null, places: {}, face: -1, frozen: null, notice: null, selected: -1 });
     // Numbered shapes have no time of their own; a walk made by code closes on itself.
     sequence.timed = sequence.times.some((time, i) => time !== sequence.times[0] && i > 0);
     sequence.loop = source.kind === 'zoo' || !sequence.timed;
@@ -238,8 +248,6 @@ export class App extends EventTarget {
     result.curve = costCurve(result);
     this.result = result;
     if (wanted != null && parameters.method === 'tree') await this.#fetchParts(wanted);
-    this.feature = Math.min(this.feature, Math.max(0, result.features.length - 1));
-    this.round = Math.max(0, result.rounds.length - 1);
     this.#paintParts();
     if (this.#looksAtParts) this.stage.flowFrom(Uint32Array.from(result.features, ({ face }) => face));
     this.changed('result', 'link');
@@ -323,15 +331,17 @@ export class App extends EventTarget {
     this.paint();
   }
 
-  setFeature(index) {
-    this.feature = clamp(index, 0, this.result.features.length - 1);
-    this.changed('view');
+  /** Goes to a position in the stage that is shown. */
+  setPlace(index) {
+    this.places = { ...this.places, [this.view]: index };
+    this.changed('place', 'link');
     this.paint();
   }
 
-  setRound(index) {
-    this.round = clamp(index, 0, this.result.rounds.length - 1);
-    this.changed('view');
+  /** Chooses the face that is looked at closely. */
+  chooseFace(face) {
+    this.face = face;
+    this.changed('place', 'link');
     this.paint();
   }
 
@@ -367,17 +377,35 @@ export class App extends EventTarget {
     this.changed('play');
   }
 
+  /** Moves the source by a skin of a stage's own, and holds it at a moment. */
+  hold(skin, time) {
+    if (this.stage.skin !== skin) this.stage.skin = skin;
+    this.frozen = time;
+    this.stage.time = time;
+  }
+
+  /** Lets the source move by its poses again. */
+  release() {
+    if (this.frozen === null) return;
+    this.frozen = null;
+    this.stage.skin = null;
+    this.changed('released');
+  }
+
   /** Paints both figures as the step and the view in force ask. */
   paint() {
     if (!this.sequence) return;
     this.stage.unmark();
     const view = viewOf(this.step, this.view);
-    if (stepNamed(this.step).pair && this.target.sequence && !stepNamed(this.step).points) KEY_POINT_VIEWS[0].paint(this);
-    else if (stepNamed(this.step).points || this.result) view.paint(this);
+    // A stage may move the source in its own way; any other lets it go.
+    if (!view.moves) this.release();
+    if (stepNamed(this.step).pair && this.target.sequence && !stepNamed(this.step).points) PAIR_VIEWS[0].paint(this);
+    else if (stepNamed(this.step).points || this.result) view.paint(this, placeIn(this, view));
     else {
       this.stage.boundaries = false;
       this.stage.paint(['paint_clay']);
     }
+    this.changed('painted');
   }
 
   get #looksAtParts() {
@@ -432,8 +460,8 @@ function without(object, name) {
   return rest;
 }
 
-const pickParts = ({ labels, unsmoothed, parts, rigid_residual, residual_before_smoothing }) =>
-  ({ labels, unsmoothed, parts, rigid_residual, residual_before_smoothing });
+const pickParts = ({ labels, unsmoothed, band, parts, rigid_residual, residual_before_smoothing }) =>
+  ({ labels, unsmoothed, band, parts, rigid_residual, residual_before_smoothing });
 
 /** What it costs to go from one more part to `parts`: the merge tree read from its finest end. */
 function costCurve({ merges, rounds }) {

@@ -11,6 +11,7 @@ import { keys } from './keys.js';
 import { goToPoints } from './link-points.js';
 import { applyLink, followState, optionsOf, placeOf, readLink, recipeOf } from './link.js';
 import { notices } from './notice.js';
+import { overlay } from './overlay.js';
 import { panel } from './panel.js';
 import { pointers } from './pointer.js';
 import { progressBar } from './progress.js';
@@ -97,6 +98,7 @@ async function start() {
   const studio = new Studio(app, { hosts: [element('stage'), element('second')], seam: element('seam'), make: makeSecond });
   panel(element('panel'), app);
   dock(element('dock'), app);
+  overlay(app, element('stage'));
   followState(app, timeline);
   studio.keepClear();
   window.addEventListener('hashchange', openAddress);

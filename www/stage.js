@@ -380,6 +380,13 @@ export class Stage extends EventTarget {
     this.#tellCamera(method, values);
   }
 
+  /** Turns and comes nearer until some faces are seen. @param {Uint32Array} faces */
+  look(faces) {
+    if (!this.view || !faces.length) return;
+    this.view.frame_faces(faces);
+    this.camera = this.view.camera();
+  }
+
   /** Six numbers that show any figure in the same way: target x, y, z, yaw, pitch, distance, in radii of its motion. */
   get camera() {
     return this.view?.camera() ?? this.kept.camera;
@@ -462,6 +469,16 @@ export class Stage extends EventTarget {
   /** sRGB triples of the groups that are painted. */
   get groupColours() {
     return this.view?.group_colours() ?? new Uint8Array();
+  }
+
+  /** Where some vertices are now, three coordinates each; nothing without a GPU. @param {Uint32Array} numbers */
+  vertices(numbers) {
+    return this.kept.mesh && this.view ? this.view.vertices(numbers) : new Float32Array();
+  }
+
+  /** Where points are on the canvas: x, y and depth each. @param {Float32Array} points three coordinates each */
+  project(points) {
+    return this.view ? this.view.project(points) : new Float32Array(points.length);
   }
 
   /** What lies under a point of the canvas: `[face, b0, b1, b2, x, y, z]`. */

@@ -5,7 +5,8 @@ import { duration, number, percent, perMille, plural } from '../format.js';
 import { lesson } from '../lesson.js';
 import { costCurve, histogram } from '../plot.js';
 import { fitting, METHODS, reading, SLIDERS, SMOOTHINGS } from './parameters.js';
-import { MARK, VIEWS } from './views.js';
+import { MARK } from './paint.js';
+import { VIEWS } from './views.js';
 import { warnings } from './warnings.js';
 
 export const partsStep = {
