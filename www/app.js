@@ -9,6 +9,7 @@
 import { collect, fetchSource } from './files.js';
 import { History } from './history.js';
 import { KeyPoints, MOST_POINTS } from './keypoints.js';
+import { readProject } from './project.js';
 import { placeIn, viewNow } from './stages.js';
 import { PARTS_VIEW, stepNamed } from './steps/index.js';
 import { PAIR_VIEWS } from './steps/point-views.js';
@@ -66,6 +67,8 @@ export class App extends EventTarget {
     this.colours = new Uint8Array();
     this.notice = null;
     this.panel = true;
+    /** Whether the lessons beside the stages are unfolded. */
+    this.lessons = false;
     /** The key point that is selected, by its place in the list; −1: none. */
     this.selected = -1;
     /** The key point that is pointed at. */
@@ -78,6 +81,12 @@ export class App extends EventTarget {
     /** Counts segmentations. */
     this.runs = 0;
     this.work = new Work({ changed: () => this.changed('busy'), say: (text) => this.say(text) });
+    /** How a project is opened, and the tours; both come with the page. @type {((project: object) => Promise<void>)|null} */
+    this.openProject = null;
+    /** @type {import('./timeline.js').Timeline|null} */
+    this.timeline = null;
+    /** @type {import('./tour.js').Guide|null} */
+    this.guide = null;
     this.keypoints = new KeyPoints(this);
     this.target = new Target(this);
     this.transfer = new Transfer(this);
@@ -180,10 +189,18 @@ export class App extends EventTarget {
     return this.#open('zoo', source, async () => ({ recipe: source.recipe }));
   }
 
-  /** @param {{name: string, blob: Blob}[]} files */
-  openFiles(files, options = {}) {
+  /** @param {{name: string, blob: Blob}[]} files @param {object|null} options null: whatever the files are */
+  async openFiles(files, options = null) {
+    if (!options && (await this.tookProject(files))) return true;
     const source = { kind: 'files', files, options: { ...this.about.options, ...options } };
     return this.#open('open', source, () => collect(files, source.options));
+  }
+
+  /** Opens files as a project, if they are one. @returns {Promise<boolean>} whether they were */
+  async tookProject(files) {
+    const project = await readProject(files);
+    if (project) await this.openProject?.(project);
+    return Boolean(project && this.openProject);
   }
 
   openAddress(url, options = {}) {
@@ -293,6 +310,13 @@ export class App extends EventTarget {
     if (answer && this.result === result) Object.assign(result, pickParts(answer));
   }
 
+  /** The open sequence as a skin with a joint for each part: `{bytes, error, rms}`, over the diagonal. */
+  exportRigid() {
+    const { result } = this;
+    if (!result || this.opening) return undefined;
+    return this.work.run('export rigid', 'writing the file', () => this.engine.call('export_rigid', { labels: result.labels }));
+  }
+
   /** The open sequence in its coloured parts as the bytes of a GLB; undefined if that did not work. */
   exportParts() {
     const { result, colours } = this;
@@ -348,6 +372,11 @@ export class App extends EventTarget {
   setPanel(open) {
     this.panel = open;
     this.changed('panel', 'link');
+  }
+
+  setLessons(open) {
+    this.lessons = open;
+    this.changed('lessons', 'link');
   }
 
   /** @param {number} index −1: none */

@@ -39,7 +39,7 @@ export function keys({ app, stage, timeline, sheet, hands }) {
     [['?'], '?', 'This sheet', () => open(sheet, shortcuts)],
   ];
   window.addEventListener('keydown', (event) => {
-    if (sheet.open) return;
+    if (document.querySelector('dialog[open]')) return;
     if ((event.ctrlKey || event.metaKey) && !event.altKey && returns(app, event)) return;
     if (event.ctrlKey || event.metaKey || event.altKey || mine(event)) return;
     if (event.shiftKey && event.key in DIRECTIONS && app.selected >= 0 && stepNamed(app.step).points) {

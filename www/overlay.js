@@ -58,6 +58,7 @@ export function overlay(app, host) {
     if (now === pose) return;
     pose = now;
     view.follow(app, now);
+    app.changed('pose');
   };
 
   stage.addEventListener('drawn', draw);

@@ -64,8 +64,9 @@ export function stageStrip(app) {
     update() {
       const view = viewNow(app);
       const count = countOf(app, view);
-      element.hidden = count < 2;
-      if (element.hidden) return;
+      // Its place is kept, so that the picture does not jump from stage to stage.
+      element.classList.toggle('off', count < 2);
+      if (count < 2) return;
       const place = placeIn(app, view);
       range.max = count - 1;
       range.valueAsNumber = place;

@@ -3,8 +3,8 @@ import { number, plural } from '../format.js';
 import { differences, frame, gradient, parted, poseOf } from '../gradient.js';
 import { poseShown } from '../overlay.js';
 
-/** Squared difference of two gradients that differ by a right angle, the end of the colours: 4 (1 − cos 90°). */
-const RIGHT_ANGLE = 4;
+/** Squared difference of two gradients that differ by a turn of 60°, the end of the colours: 4 (1 − cos 60°). */
+const SIXTH = 2;
 /** Beyond this many faces the picture is not painted by pose: that would make it stutter. */
 const MOST_FACES = 120_000;
 /** So many faces of the graph are drawn around the one that is looked at. */
@@ -46,7 +46,7 @@ function paintDifferences(app, pose) {
   const { stage, sequence } = app;
   stage.boundaries = false;
   if (sequence.sizes.faces > MOST_FACES) stage.paint(['paint_clay']);
-  else stage.paint(['paint_scalar', differences(sequence, poseOf(sequence, pose), faceOf(app)), 0, RIGHT_ANGLE, 'viridis']);
+  else stage.paint(['paint_scalar', differences(sequence, poseOf(sequence, pose), faceOf(app)), 0, SIXTH, 'viridis']);
 }
 
 export const gradients = {
@@ -59,8 +59,8 @@ export const gradients = {
   legend: (app) => ({
     kind: 'scalar',
     map: 'viridis',
-    marks: [0, RIGHT_ANGLE / 2, RIGHT_ANGLE],
-    unit: `‖Mᵢ − Mⱼ‖² to face ${faceOf(app)}, in this pose; 4 is a right angle`,
+    marks: [0, SIXTH / 2, SIXTH],
+    unit: `‖Mᵢ − Mⱼ‖² to face ${faceOf(app)}, in this pose; 2 is a turn of 60°`,
   }),
   overlay(app) {
     const face = faceOf(app);

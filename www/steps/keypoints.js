@@ -3,7 +3,7 @@ import { choice, facts, fold, slider, toggle } from '../controls.js';
 import { errorCurve, fallingLines, ranking } from '../curves.js';
 import { h, show } from '../dom.js';
 import { duration, number, plural } from '../format.js';
-import { lesson } from '../lesson.js';
+import { lesson, stageLesson } from '../lesson.js';
 import { placeIn } from '../stages.js';
 import { pointList } from './point-list.js';
 import { KEY_POINT_VIEWS } from './point-views.js';
@@ -54,7 +54,7 @@ function build(app) {
   app.on('doc points source busy', update);
   app.on('view place', () => show(choices, ...choicePlot(app)));
   update();
-  return h('div', { class: 'step' }, h('h2', {}, 'Key points'), words, find, numbers, curve, list, noticed, ...how,
+  return h('div', { class: 'step' }, h('h2', {}, 'Key points'), stageLesson(app, 'keypoints'), words, find, numbers, curve, list, noticed, ...how,
     fold('How it works', { load: () => lesson('keypoints') }));
 }
 
