@@ -2,6 +2,7 @@
 
 pub mod ball;
 pub mod bvh;
+pub mod doctor;
 pub mod dual;
 pub mod face;
 mod groups;
