@@ -4,7 +4,9 @@
 //!
 //! * *Segmenting a deforming mesh into near-rigid components* (Lee, Wang, Chen 2006): [`segmentation`];
 //! * *Biharmonic deformation transfer with automatic key point selection* (Yang, Gao, Lai, Rosin, Xia 2018):
-//!   [`weights`], [`skinning`], [`keypoints`] and [`transfer`].
+//!   [`weights`], [`skinning`], [`keypoints`] and [`transfer`];
+//! * *Deformation transfer for triangle meshes* (Sumner, Popović 2004): [`transfer::gradients`], with references in different
+//!   postures as in the first paper: [`transfer::posed`].
 //!
 //! Data flows one way: [`import`] (or [`zoo`]) → [`sequence::Sequence`] → [`segmentation`] or [`keypoints`] →
 //! [`transfer`] → [`export`] or [`view`]. Algorithms are plain functions from inputs and a parameter struct to a result

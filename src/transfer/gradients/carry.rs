@@ -30,7 +30,7 @@ pub struct Scene<'a> {
     pub turns: &'a [DMat3],
     /// Where the target's vertices are after those rotations (#N).
     pub turned: &'a [DVec3],
-    /// Places of the target that go as their twins do, see [`pinned`].
+    /// Places of the target that go exactly as far as their twins do, but for the size.
     pub pins: &'a [u32],
     /// A face that is off by so much from what is asked of it counts half; 0: all count in full.
     pub doubt: f64,

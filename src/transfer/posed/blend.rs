@@ -26,10 +26,10 @@ pub fn shares(surface: &Surface, labels: &[u32], count: usize) -> Result<Vec<f64
     }
     let factor = Cholesky::new(n, &entries)?;
     let mut columns = vec![0.0; n * count];
-    for v in 0..n {
+    for (v, mass) in mass.iter().enumerate() {
         let faces = surface.faces_around(v);
         for &f in faces {
-            columns[labels[f as usize] as usize * n + v] += mass[v] / faces.len() as f64;
+            columns[labels[f as usize] as usize * n + v] += mass / faces.len() as f64;
         }
     }
     factor.solve(&mut columns);
