@@ -66,6 +66,8 @@ export class App extends EventTarget {
     /** sRGB triples of the parts. */
     this.colours = new Uint8Array();
     this.notice = null;
+    /** The picture of the target by another method, while there is one. */
+    this.third = null;
     this.panel = true;
     /** Whether the lessons beside the stages are unfolded. */
     this.lessons = false;
@@ -406,9 +408,10 @@ export class App extends EventTarget {
     this.changed('play');
   }
 
-  /** Moves the source by a skin of a stage's own, and holds it at a moment. */
+  /** Moves the source by a skin of a stage's own, or by `poses`, and holds it at a moment. */
   hold(skin, time) {
-    if (this.stage.skin !== skin) this.stage.skin = skin;
+    if (skin.poses) this.stage.poses = skin.poses;
+    else if (this.stage.skin !== skin) this.stage.skin = skin;
     this.frozen = time;
     this.stage.time = time;
   }
@@ -417,7 +420,7 @@ export class App extends EventTarget {
   release() {
     if (this.frozen === null) return;
     this.frozen = null;
-    this.stage.skin = null;
+    this.stage.poses = this.sequence.poses;
     this.changed('released');
   }
 

@@ -1,6 +1,7 @@
 /** Puts the page together: engine, stage, controls; then opens what the address asks for, or the first creature. */
 import { App } from './app.js';
 import { bench } from './bench.js';
+import { beside } from './beside.js';
 import { dock } from './dock.js';
 import { iconButton, show } from './dom.js';
 import { drops } from './drop.js';
@@ -66,6 +67,7 @@ app.guide = guide;
 const turnTheme = theme((dark) => {
   stage.dark = dark;
   if (app.second) app.second.dark = dark;
+  if (app.third) app.third.dark = dark;
 });
 notices(element('notice'), app);
 progressBar(element('progress'), app);
@@ -101,12 +103,15 @@ if (embedded) {
   whole.addEventListener('click', () => (whole.href = addressOf(app, timeline)));
 }
 
+/** A picture whose points cannot be taken hold of. */
+const UNTOUCHED = { grab: () => null, tap: () => false, cursor: () => '' };
+
 /** The picture of the target, made when it is first needed. */
-function makeSecond(host) {
+function makeSecond(host, hand = hands.target) {
   const second = new Stage(host, bundle('page'), query.get('backend'));
   second.addEventListener('trouble', ({ error }) => app.say(error.message));
   second.started.catch((error) => console.error(error));
-  pointers(second, { point: () => {}, hand: hands.target });
+  pointers(second, { point: () => {}, hand });
   return second;
 }
 
@@ -115,6 +120,7 @@ async function start() {
   openAddress();
   rail(element('rail'), app);
   const studio = new Studio(app, { hosts: [element('stage'), element('second')], seam: element('seam'), make: makeSecond });
+  beside(app, element('stage'), (host) => makeSecond(host, UNTOUCHED));
   panel(element('panel'), app, tourCard(guide));
   dock(element('dock'), app);
   overlay(app, element('stage'));
@@ -207,10 +213,10 @@ window.sinew = {
     tally: app.target.tally,
     next: app.target.next,
     selected: app.selected,
-    moves: app.transfer.motion && { method: app.transfer.method, pairs: app.transfer.motion.pairs, handles: app.transfer.motion.handles, seconds: app.transfer.motion.took },
+    moves: app.transfer.motion && { method: app.transfer.method, pairs: app.transfer.motion.pairs, handles: app.transfer.motion.handles, beside: app.transfer.other?.method ?? null, seconds: app.transfer.motion.took },
     undo: app.history.past.length,
     redo: app.history.future.length,
-    drawn: stage.drawn && (app.second?.drawn ?? true),
+    drawn: stage.drawn && (app.second?.drawn ?? true) && (app.third?.drawn ?? true),
     plain: stage.pace.plain,
     frame: Math.round(stage.pace.took),
   }),

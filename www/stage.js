@@ -298,6 +298,15 @@ export class Stage extends EventTarget {
     this.#keepCamera();
   }
 
+  /** Other poses for the same mesh, or none, in place of a skin. @param {Float32Array} poses */
+  set poses(poses) {
+    if (!this.kept.mesh || (this.kept.mesh.poses === poses && !this.kept.skin)) return;
+    const first = Boolean(this.kept.skin) || !this.kept.mesh.poses.length !== !poses.length;
+    this.#set({ mesh: { ...this.kept.mesh, poses }, skin: null }, (view) => view.set_poses(poses));
+    if (first) this.#frameUnlessMoved();
+    this.#keepCamera();
+  }
+
   /** Other matrices for the same skin. @param {Float32Array} matrices */
   set maps(matrices) {
     if (!this.kept.skin) return;

@@ -81,7 +81,8 @@ export class Studio {
   #move() {
     const { second, transfer: { motion }, stage } = this.app;
     if (!second || !this.open) return;
-    second.skin = motion && { handles: motion.handles, indices: motion.indices, weights: motion.weights, K: motion.K, matrices: motion.matrices };
+    if (motion?.positions) second.poses = motion.positions;
+    else second.skin = motion && { handles: motion.handles, indices: motion.indices, weights: motion.weights, K: motion.K, matrices: motion.matrices };
     second.loop = stage.kept.loop;
     second.time = motion ? stage.kept.time : -1;
   }

@@ -128,6 +128,7 @@ export class Timeline {
     const still = this.reference || this.poses === 0;
     const shown = this.app.sequence?.loop ? wrap(this.time, this.end || 1) : this.time;
     this.app.stage.time = this.app.frozen ?? (still ? -1 : shown);
+    if (this.app.third) this.app.third.time = still ? -1 : shown;
     if (this.app.transfer.motion) this.app.second.time = still ? -1 : shown;
     this.range.valueAsNumber = this.time;
     const label = this.playing ? 'Pause (space)' : 'Play (space)';

@@ -10,6 +10,10 @@ export class Transfer {
     /** Files that were made of this motion, by form. */
     this.files = new Map();
     this.move = latest(() => this.#move());
+    /** Another method that is shown beside it, '' for none, and where it puts the vertices. */
+    this.rival = '';
+    this.other = null;
+    this.compare = latest(() => this.#compare());
   }
 
   /** How the target moves. */
@@ -19,6 +23,13 @@ export class Transfer {
 
   setMethod(method) {
     this.app.edit({ method: method === this.app.about.transfer.method ? '' : method });
+  }
+
+  /** Shows the target by another method in place of the source. @param {string} method '' for the source */
+  setRival(method) {
+    this.rival = method;
+    this.#setOther(null);
+    this.compare();
   }
 
   /** The points that have a place on both sides. */
@@ -36,6 +47,15 @@ export class Transfer {
     if (!same && after.target) this.move();
   }
 
+  get #message() {
+    const { app, pairs } = this;
+    return {
+      pairs: pairs.flatMap(({ source, target: vertex }) => [source, vertex]),
+      parameters: { ...app.about.transfer, method: this.method },
+      quick: app.held,
+    };
+  }
+
   async #move() {
     const { app, pairs } = this;
     const { target } = app.doc;
@@ -44,11 +64,7 @@ export class Transfer {
       return;
     }
     const started = performance.now();
-    const message = {
-      pairs: pairs.flatMap(({ source, target: vertex }) => [source, vertex]),
-      parameters: { ...app.about.transfer, method: this.method },
-      quick: app.held,
-    };
+    const message = this.#message;
     const answer = await app.work.run('motion', 'moving the target', (progress) => app.engine.call('transfer', message, { progress }));
     if (!answer || app.doc.target !== target) return;
     answer.took = (performance.now() - started) / 1000;
@@ -61,6 +77,27 @@ export class Transfer {
     this.motion = motion;
     this.files.clear();
     this.app.changed('motion');
+    if (this.app.view === 'fit') this.app.paint();
+    this.#setOther(null);
+    this.compare();
+  }
+
+  async #compare() {
+    const { app, rival, motion } = this;
+    const { target } = app.doc;
+    if (!rival || !motion || app.held) return;
+    // Both as positions, so that the distance between them can be told.
+    const ask = (method) => app.engine.call('positions_by', { pairs: this.#message.pairs, parameters: { ...app.about.transfer, method } });
+    const answers = await app.work.run('rival', 'comparing', async () =>
+      [await ask(rival), motion.positions ? motion : await ask(this.method)]);
+    if (!answers || app.doc.target !== target || this.motion !== motion || this.rival !== rival) return;
+    this.#setOther({ method: rival, positions: answers[0].positions, own: answers[1].positions });
+  }
+
+  #setOther(other) {
+    if (this.other === other) return;
+    this.other = other;
+    this.app.changed('rival');
   }
 
   /**

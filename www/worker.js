@@ -7,6 +7,9 @@ import init, { Engine } from '../pkg/worker.js';
 /** Progress is told at most this often, in milliseconds. */
 const PROGRESS_EVERY = 60;
 
+/** The methods that move vertices, not a skin. */
+const BY_FACES = new Set(['gradients', 'posed']);
+
 let engine;
 
 const operations = {
@@ -30,7 +33,9 @@ const operations = {
   propose: ({ points, known }) => engine.propose(points, known),
   target_weights: ({ points }) => engine.target_weights(points),
   landmarks: ({ source, target }) => Engine.landmarks(source, target),
-  transfer: ({ pairs, parameters, quick }, progress) => engine.transfer(pairs, parameters, quick, progress),
+  transfer: ({ pairs, parameters, quick }, progress) => (BY_FACES.has(parameters.method)
+    ? engine.transfer_faces(pairs, parameters, progress) : engine.transfer(pairs, parameters, quick, progress)),
+  positions_by: ({ pairs, parameters }, progress) => engine.positions_by(pairs, parameters, progress),
   export_transfer: ({ form }) => engine.export_transfer(form),
 };
 

@@ -5,6 +5,7 @@
 //! sequence that the page gives back after a restart ([`Engine::restore`]) yields the same bytes again.
 //! An error is one sentence for a person, thrown as a string.
 
+mod faces;
 mod moving;
 mod pair;
 mod points;
@@ -16,11 +17,13 @@ use crate::import::{self, Options};
 use crate::keypoints;
 use crate::segmentation::{Parameters, Segmentation, Segmenter, Steps};
 use crate::sequence::Sequence;
+use crate::transfer::gradients::Mover;
 use crate::transfer::propose::Proposer;
 use crate::transfer::{self, Prepared, Transfer};
 use crate::view::colour::srgb_to_linear;
 use crate::weights::Biharmonic;
 use crate::zoo::{self, Recipe};
+use glam::DVec3;
 use js_sys::{Array, Function, Object, Uint8Array, Uint32Array};
 use sequences::{describe, kept_sequence, rounded};
 use serde::Serialize;
@@ -40,6 +43,9 @@ pub struct Engine {
     proposer: Option<Proposer>,
     prepared: Option<(transfer::Parameters, Prepared)>,
     moved: Option<Transfer>,
+    /// The same for methods that move vertices.
+    mover: Option<(transfer::Parameters, Mover)>,
+    faces_moved: Option<Vec<Vec<DVec3>>>,
 }
 
 /// What [`Engine::about`] says.

@@ -5,6 +5,7 @@ mod everyone;
 #[allow(dead_code, reason = "a harness offers more than is used today")]
 mod harness;
 mod looking;
+mod methods;
 mod opening;
 mod pairs;
 mod phone;

@@ -5,16 +5,16 @@ use crate::opening::opened;
 use serde_json::Value;
 
 /// Seconds for the selection of key points and the rest of a transfer on a busy machine.
-const PATIENT: f64 = 60.0;
-const IDLE: &str = "!sinew.state().busy && sinew.state().drawn";
+pub const PATIENT: f64 = 60.0;
+pub const IDLE: &str = "!sinew.state().busy && sinew.state().drawn";
 
-fn step(page: &mut Page, name: &str) {
+pub fn step(page: &mut Page, name: &str) {
     page.click(&format!("#step-{name}"));
     page.wait_until(&format!("sinew.state().step === '{name}'"), 3.0);
 }
 
 /// The horse with its key points, and the camel with what is proposed for it.
-fn proposed(backend: Backend, screen: Screen) -> Page {
+pub fn proposed(backend: Backend, screen: Screen) -> Page {
     let mut page = opened(backend, screen, "#v1;zoo=horse;faces=3000;poses=8;k.points=8");
     step(&mut page, "keypoints");
     page.wait_until("sinew.state().points > 2 && !sinew.state().busy", PATIENT);

@@ -34,7 +34,7 @@ function build(app) {
   const update = () => {
     const { motion, files } = app.transfer;
     show(moving, ...(motion ? [
-      ...FORMS.map(([form, name, about]) => item(name, detail(about, files.get(form)), () => saveForm(app, form), `export-${form}`)),
+      ...FORMS.filter(([form]) => form === 'exact' || motion.handles).map(([form, name, about]) => item(name, detail(about, files.get(form)), () => saveForm(app, form), `export-${form}`)),
       item('Pairs', 'The key points of both as vertex numbers, JSON.', () => saveBlob(pairsFile(app), `${baseName(app)}-pairs.json`), 'export-pairs'),
       item('Report', 'Parameters, errors and times, JSON.', () => saveBlob(reportFile(app), `${baseName(app)}-report.json`), 'export-report'),
     ] : [h('p', { class: 'small faint' }, app.doc.target ? 'The target does not move yet: its points have no place.' : 'With a target that moves, it can be taken away here.')]));
@@ -90,7 +90,7 @@ async function saveProject(app) {
 async function measure(app) {
   const { motion } = app.transfer;
   if (!motion || app.target.sequence.sizes.vertices * app.sequence.sizes.poses > SMALL) return;
-  for (const [form] of FORMS) await app.transfer.file(form);
+  for (const [form] of FORMS) if (form === 'exact' || motion.handles) await app.transfer.file(form);
 }
 
 const clean = (name) => name.replace(/\.[^.]*$/, '').replace(/[^\w-]+/g, '-');

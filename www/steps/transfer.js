@@ -1,16 +1,17 @@
 /** The step Transfer: the target moves. How, with what numbers. */
-import { choice, facts, fold } from '../controls.js';
+import { choice, facts, fold, select } from '../controls.js';
 import { h, show } from '../dom.js';
-import { count, duration, plural } from '../format.js';
+import { count, duration, number, plural } from '../format.js';
 import { lesson } from '../lesson.js';
 import { METHODS } from './methods.js';
+import { FIT_VIEW } from './fit-view.js';
 import { PAIR_VIEWS } from './point-views.js';
 import { warnings } from './warnings.js';
 
 export const transferStep = {
   id: 'transfer',
   title: 'Transfer',
-  views: PAIR_VIEWS,
+  views: [...PAIR_VIEWS, FIT_VIEW],
   view: 'points',
   points: true,
   pair: true,
@@ -30,7 +31,8 @@ function build(app) {
   const about = h('p', { class: 'small faint' });
   const numbers = h('div');
   const noticed = h('div', { class: 'stack' });
-  const variants = h('div', {}, h('h3', {}, 'Variant'), method, about);
+  const beside = h('div');
+  const variants = h('div', {}, h('h3', {}, 'Variant'), method, about, beside);
   const update = () => {
     const { transfer: { motion, method: name, pairs }, doc } = app;
     words.textContent = introduction(app);
@@ -39,11 +41,13 @@ function build(app) {
     variants.hidden = !doc.target || !doc.count;
     const chosen = method.querySelector(`[value="${name}"]`);
     if (chosen) chosen.checked = true;
+    show(beside, select('Beside it', [['', 'the source'], ...METHODS.filter(([id]) => id !== name).map(([id, label]) => [id, label])],
+      app.transfer.rival, (value) => app.transfer.setRival(value)));
     about.textContent = METHODS.find(([id]) => id === name)?.[2] ?? '';
     show(numbers, motion && app.target.sequence && motionFacts(app));
     show(noticed, ...warnings(app, motion?.warnings, app.second));
   };
-  app.on('doc motion target source', update);
+  app.on('doc motion target source rival', update);
   update();
   return h('div', { class: 'step' }, h('h2', {}, 'Transfer'), words, go, numbers, noticed, variants,
     fold('How it works', { load: () => lesson('transfer') }));
@@ -62,6 +66,10 @@ function introduction(app) {
 function motionFacts({ transfer: { motion }, target: { sequence }, sequence: source }) {
   return facts([
     ['Pairs', String(motion.pairs)],
+    motion.quality && ['Covered', `${Math.round(1000 * motion.quality.coverage) / 10} %`, 'Share of the target that the source, bent into it, lies near to and facing the same way'],
+    motion.quality && ['Apart', number(100 * motion.quality.distance, 2) + ' %', 'Mean distance of the target from the source bent into it, in its radii'],
+    motion.quality && ['Flipped', `${Math.round(1000 * motion.quality.flipped) / 10} %`, 'Share of the target where the nearest sheet of the bent source faces the other way'],
+    motion.parts > 0 && ['Parts turned', String(motion.parts), 'Near-rigid parts of the source, each turned into its posture on the target'],
     motion.bones > 0 && ['Bones', String(motion.bones), 'Near-rigid pieces of the source that were found in its motion'],
     ['Vertices', count(sequence.sizes.vertices)],
     ['Poses', count(source.sizes.poses)],

@@ -22,6 +22,7 @@ impl Engine {
         let pairs: Vec<Pair> = pairs.as_chunks().0.iter().map(|&[source, target]| Pair { source, target }).collect();
         let mut observer = watcher(progress);
         self.moved = None;
+        self.faces_moved = None;
         let mut preparing = Vec::new();
         let mut prepared = match self.prepared.take() {
             Some((made_with, prepared)) if made_with == parameters => prepared,
@@ -57,6 +58,14 @@ impl Engine {
     /// adds, over the diagonal. `form` is `exact` or `light`.
     pub fn export_transfer(&self, form: &str) -> Reply {
         let (source, target) = (self.open_sequence()?, self.open_target()?);
+        if let ("exact", Some(poses)) = (form, &self.faces_moved) {
+            let reply: JsValue = Object::new().into();
+            let bytes = animation::exact(&moving(source, target, poses.clone())?);
+            put(&reply, "bytes", &Uint8Array::from(bytes.as_slice()))?;
+            put(&reply, "error", &0.0_f64.into())?;
+            put(&reply, "rms", &0.0_f64.into())?;
+            return Ok(reply);
+        }
         let moved = self.moved.as_ref().ok_or_else(|| sentence("The target does not move yet."))?;
         let (bytes, error, rms) = match form {
             "exact" => (animation::exact(&moving(source, target, moved.poses(target.reference()))?), 0.0, 0.0),

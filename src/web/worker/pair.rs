@@ -105,6 +105,8 @@ impl Engine {
         self.proposer = None;
         self.prepared = None;
         self.moved = None;
+        self.mover = None;
+        self.faces_moved = None;
     }
 }
 

@@ -1,0 +1,100 @@
+/**
+ * Two methods side by side: the target by another method lies over the source's picture, seen and timed as the target
+ * is, and both are painted by how far they are apart.
+ */
+import { h } from './dom.js';
+import { number } from './format.js';
+import { link } from './stage.js';
+import { METHODS } from './steps/methods.js';
+
+const MAP = 'viridis';
+
+/**
+ * @param {import('./app.js').App} app
+ * @param {HTMLElement} first the host of the source's picture
+ * @param {(host: HTMLElement) => import('./stage.js').Stage} make
+ */
+export function beside(app, first, make) {
+  const host = h('div', { class: 'stage beside', hidden: true });
+  const words = h('p', { class: 'beside-words small', 'aria-live': 'polite' });
+  host.append(words);
+  first.append(host);
+  let unlink = null;
+  let painted = -1;
+  const active = () => Boolean(app.transfer.other && app.step === 'transfer' && app.second);
+
+  const arrange = () => {
+    const on = active();
+    host.hidden = !on;
+    painted = -1;
+    if (!on) {
+      if (app.third) {
+        unlink?.();
+        app.third.close();
+        app.third = null;
+        app.paint();
+      }
+      return;
+    }
+    const { sequence } = app.target;
+    if (!app.third) {
+      app.third = make(host);
+      app.third.dark = app.stage.kept.dark;
+      app.third.insets = app.stage.kept.insets;
+      unlink = link(app.second, app.third);
+    }
+    const { other } = app.transfer;
+    app.third.describe(`${sequence.name} by another method`);
+    app.third.open({ faces: sequence.faces, reference: sequence.reference, poses: other.positions }, app.stage.kept.loop);
+    app.third.turn = app.second.turn;
+    app.third.time = app.second.kept.time;
+    app.third.boundaries = false;
+    paint();
+  };
+
+  /** Paints both by their distance in the pose that is nearest to the moment. */
+  const paint = () => {
+    if (!active() || !app.third) return;
+    const { other } = app.transfer;
+    const { sequence } = app.target;
+    const length = sequence.reference.length;
+    const count = other.positions.length / length;
+    const pose = Math.round(app.third.kept.time) % count;
+    if (pose === painted || pose < 0) return;
+    painted = pose;
+    const [values, high] = [distances(other.own, other.positions, pose * length, length), most(other, length)];
+    for (const figure of [app.second, app.third]) figure.paint(['paint_vertices', values, 0, high, MAP]);
+    const mean = values.reduce((sum, value) => sum + value, 0) / values.length;
+    const name = METHODS.find(([id]) => id === other.method)?.[1];
+    words.textContent = `${name}: off by ${number((100 * mean) / sequence.diagonal, 2)} % of the size here, bright from ${number((100 * high) / sequence.diagonal, 2)} %`;
+  };
+
+  app.on('rival step target second', arrange);
+  app.on('painted', () => {
+    painted = -1;
+    paint();
+  });
+  app.stage.addEventListener('tick', paint);
+  new ResizeObserver(() => app.third && (app.third.insets = app.stage.kept.insets)).observe(first);
+}
+
+/** #V: how far the vertices of one pose are apart. */
+function distances(a, b, from, length) {
+  const values = new Float32Array(length / 3);
+  for (let v = 0, i = from; v < values.length; v++, i += 3) values[v] = Math.hypot(a[i] - b[i], a[i + 1] - b[i + 1], a[i + 2] - b[i + 2]);
+  return values;
+}
+
+const scales = new WeakMap();
+
+/** The distance that nineteen of twenty vertices, over all poses, keep below. */
+function most(other, length) {
+  if (!scales.has(other)) {
+    const all = [];
+    const step = Math.max(1, Math.floor(other.own.length / length / 12)) * length;
+    for (let from = 0; from < other.own.length; from += step) all.push(...distances(other.own, other.positions, from, length));
+    all.sort((a, b) => a - b);
+    scales.set(other, Math.max(all[Math.floor(0.95 * all.length)] ?? 0, 1e-9));
+  }
+  return scales.get(other);
+}
