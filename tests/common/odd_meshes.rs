@@ -201,13 +201,19 @@ fn edges() -> Vec<Sequence> {
             2.0 * out + across * ((0.5 * angle).cos() * DVec3::Z + (0.5 * angle).sin() * out)
         })
         .collect();
-    let mut band: Vec<[u32; 3]> = (0..46).map(|i| if i % 2 == 0 { [i, i + 1, i + 2] } else { [i, i + 2, i + 1] }).collect();
+    let mut band: Vec<[u32; 3]> =
+        (0..46).map(|i| if i % 2 == 0 { [i, i + 1, i + 2] } else { [i, i + 2, i + 1] }).collect();
     band.extend([[46, 47, 1], [47, 0, 1]]);
     let moebius = bending("a band with half a turn", (band, points));
 
-    let tips: Vec<DVec3> =
-        [DVec3::ZERO, DVec3::new(1., 1., 0.), DVec3::new(1., -1., 0.), DVec3::new(-1., 1., 0.), DVec3::new(-1., -1., 0.)]
-            .to_vec();
+    let tips: Vec<DVec3> = [
+        DVec3::ZERO,
+        DVec3::new(1., 1., 0.),
+        DVec3::new(1., -1., 0.),
+        DVec3::new(-1., 1., 0.),
+        DVec3::new(-1., -1., 0.),
+    ]
+    .to_vec();
     let bow = bending("two faces that touch at a corner", (vec![[0, 2, 1], [0, 3, 4]], tips));
     vec![holes, book, twice, flipped, moebius, bow]
 }
@@ -242,10 +248,11 @@ fn areas() -> Vec<Sequence> {
 
 fn motions() -> Vec<Sequence> {
     let (faces, points) = closed_tube(8);
-    let mirrored = |p: &DVec3| DVec3::new(-p.x, p.y, p.z);
-    let poses = bent(&points, 4);
-    let mirror: Vec<Vec<DVec3>> =
-        poses.iter().enumerate().map(|(k, pose)| if k == 2 { pose.iter().map(mirrored).collect() } else { pose.clone() }).collect();
+    // A tube has a mirror image that is a turn of itself; one that winds like a screw has none.
+    let screw: Vec<DVec3> =
+        points.iter().map(|p| *p + DVec3::new(0.0, (1.5 * p.x).sin(), (1.5 * p.x).cos())).collect();
+    let mut mirror = bent(&screw, 4);
+    mirror[2].iter_mut().for_each(|p| p.x = -p.x);
     let flat: Vec<DVec3> = points.iter().map(|p| DVec3::new(p.x, p.y, 0.0)).collect();
     // Every vertex somewhere else.
     let noise = |k: usize| {
@@ -256,7 +263,7 @@ fn motions() -> Vec<Sequence> {
         sequence("still", &faces, &points, &[]),
         sequence("poses that are the reference", &faces, &points, &vec![points.clone(); 3]),
         sequence("one pose", &faces, &points, &bent(&points, 1)),
-        sequence("a mirrored pose", &faces, &points, &mirror),
+        sequence("a mirrored pose", &faces, &screw, &mirror),
         sequence("a flat pose", &faces, &points, &[flat]),
         sequence("noise", &faces, &points, &(0..4).map(noise).collect::<Vec<_>>()),
     ]
@@ -273,10 +280,12 @@ fn sizes() -> Vec<Sequence> {
     more.splice(0..0, (0..20).map(|i| DVec3::splat(if i == 7 { 1e9 } else { f64::from(i) })));
     let moved: Vec<[u32; 3]> = faces.iter().map(|face| face.map(|v| v + 20)).collect();
     let unused = sequence("vertices without a face", &moved, &more, &bent(&more, 3));
-    let explodes = sequence("a pose that explodes", &faces, &points, &[
-        points.clone(),
-        points.iter().enumerate().map(|(v, &p)| if v % 5 == 0 { p * 1e12 } else { p }).collect(),
-    ]);
+    let explodes = sequence(
+        "a pose that explodes",
+        &faces,
+        &points,
+        &[points.clone(), points.iter().enumerate().map(|(v, &p)| if v % 5 == 0 { p * 1e12 } else { p }).collect()],
+    );
     vec![
         far,
         shifted,

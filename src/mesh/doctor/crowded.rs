@@ -20,9 +20,10 @@ pub fn check(chart: &Chart) -> Option<Finding> {
         count,
         what: counted(count, "edge has three faces or more", "edges have three faces or more"),
         done: "Their faces are taken as neighbours, one after the other.".into(),
-        means: "Motion and weights pass between all the sheets that meet there, also where they only touch. Separate the \
+        means:
+            "Motion and weights pass between all the sheets that meet there, also where they only touch. Separate the \
                 sheets if they are to move on their own."
-            .into(),
+                .into(),
         faces,
     })
 }

@@ -13,7 +13,8 @@ pub fn check(chart: &Chart) -> Option<Finding> {
         count: faces.len(),
         what: counted(faces.len(), "face is there twice", "faces are there twice"),
         done: "They were kept, so that faces keep their numbers.".into(),
-        means: "Their area counts twice, and weights cross them more easily. Their edges have three faces and more.".into(),
+        means: "Their area counts twice, and weights cross them more easily. Their edges have three faces and more."
+            .into(),
         faces,
     })
 }

@@ -36,9 +36,10 @@ pub fn check(chart: &Chart) -> Option<Finding> {
         count,
         what: counted(count, "pose flies apart", "poses fly apart"),
         done: "Nothing: the poses are used as they are.".into(),
-        means: "Some vertices move by more than ten times the size of the mesh. Parts and points follow that motion and \
+        means:
+            "Some vertices move by more than ten times the size of the mesh. Parts and points follow that motion and \
                 little else. Mend these poses, or leave them out."
-            .into(),
+                .into(),
         faces: chart.faces_with(|v| lost[v as usize]),
     })
 }

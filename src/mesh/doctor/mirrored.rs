@@ -27,9 +27,10 @@ pub fn check(chart: &Chart) -> Option<Finding> {
         count,
         what: counted(count, "pose is a mirror image", "poses are mirror images"),
         done: "Nothing: the poses are used as they are.".into(),
-        means: "No rotation leads from the reference to its mirror image, so parts do not move rigidly there. An axis was \
+        means:
+            "No rotation leads from the reference to its mirror image, so parts do not move rigidly there. An axis was \
                 probably turned round in the export of these poses."
-            .into(),
+                .into(),
         faces: Vec::new(),
     })
 }

@@ -199,6 +199,5 @@ fn summary(findings: &[Finding]) -> String {
     }
 }
 
-
 #[cfg(test)]
 mod tests;

@@ -17,7 +17,8 @@ const FEWEST: usize = 12;
 /// Vertices of faces that lie far outside.
 pub fn check(chart: &Chart) -> Option<Finding> {
     let used = |v: &usize| chart.used[*v] && chart.stands[*v] as usize == *v && chart.reference[*v].is_finite();
-    let points: Vec<DVec3> = (0..chart.reference.len()).filter(used).map(|v| chart.reference[v] * chart.scale).collect();
+    let points: Vec<DVec3> =
+        (0..chart.reference.len()).filter(used).map(|v| chart.reference[v] * chart.scale).collect();
     if points.len() < FEWEST {
         return None;
     }
@@ -36,9 +37,10 @@ pub fn check(chart: &Chart) -> Option<Finding> {
         count,
         what: counted(count, "vertex is very far from all others", "vertices are very far from all others"),
         done: "Nothing: the size of the whole is measured with them.".into(),
-        means: "Everything is measured in the size of the whole, so all else looks small and still beside them: too few \
+        means:
+            "Everything is measured in the size of the whole, so all else looks small and still beside them: too few \
                 parts, too few points. Delete them, and read the file again."
-            .into(),
+                .into(),
         faces: chart.faces_with(outside),
     })
 }

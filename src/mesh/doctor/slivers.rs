@@ -22,9 +22,10 @@ pub fn check(chart: &Chart) -> Option<Finding> {
         count: faces.len(),
         what: counted(faces.len(), "face is a sliver", "faces are slivers"),
         done: "Nothing: they are used as they are.".into(),
-        means: "They are fifty times as long as high, or more. Rounding alone turns them, so boundaries of parts may be \
+        means:
+            "They are fifty times as long as high, or more. Rounding alone turns them, so boundaries of parts may be \
                 ragged there."
-            .into(),
+                .into(),
         faces,
     })
 }

@@ -134,7 +134,8 @@ fn pieces_and_what_stands_still() {
     let count = faces.len();
     faces.extend(faces.clone().iter().map(|face| face.map(|v| v + 98)));
     points.extend(points.clone().iter().map(|p| *p + 5.0 * DVec3::Y));
-    let pose: Vec<DVec3> = points.iter().enumerate().map(|(v, p)| *p + if v < 98 { DVec3::X } else { DVec3::ZERO }).collect();
+    let pose: Vec<DVec3> =
+        points.iter().enumerate().map(|(v, p)| *p + if v < 98 { DVec3::X } else { DVec3::ZERO }).collect();
     let diagnosis = examined(&faces, &points, &[pose]);
     assert_eq!(found(&diagnosis, Code::Pieces), (2, count));
     assert_eq!(found(&diagnosis, Code::StillPieces), (1, count));
@@ -149,7 +150,8 @@ fn seams_are_no_holes() {
     let diagnosis = examined(&loose, &corners, &[]);
     assert_eq!(codes(&diagnosis), [Code::Seams]);
     assert_eq!(found(&diagnosis, Code::Seams), (corners.len() - points.len(), faces.len()));
-    let notes = [Warning::new("welded", "70 vertices were joined."), Warning::new("collapsed-faces", "3 faces were left out.")];
+    let notes =
+        [Warning::new("welded", "70 vertices were joined."), Warning::new("collapsed-faces", "3 faces were left out.")];
     let diagnosis = Diagnosis::of_mesh(&Mesh { faces: &faces, reference: &points, poses: Vec::new() }, &notes);
     assert_eq!(found(&diagnosis, Code::Welded), (70, 0));
     assert_eq!(found(&diagnosis, Code::DegenerateFaces), (3, 0));

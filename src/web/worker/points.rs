@@ -4,6 +4,7 @@ use super::Engine;
 use super::values::{Reply, parsed, plain, put, sentence, single};
 use super::watcher;
 use crate::keypoints::{self, KeyPoints, Parameters};
+use crate::memory::Step;
 use crate::skinning::Fit;
 use crate::weights::Weights;
 use js_sys::{Array, Float64Array, Function, Object, Uint32Array};
@@ -14,6 +15,7 @@ impl Engine {
     /// Finds the key points of what is open, with [`Parameters`] in their serde form.
     pub fn keypoints(&self, parameters: JsValue, progress: &Function) -> Reply {
         let parameters: Parameters = parsed(parameters)?;
+        self.room_for(Step::KeyPoints(parameters.points.unwrap_or(parameters.max)), self.open_sequence()?)?;
         let found = keypoints::select(self.open_sequence()?, &parameters, &mut watcher(progress)).map_err(sentence)?;
         let reply = describe(&found.weights, &found.groups, &found.fits)?;
         put(&reply, "key_points", &Uint32Array::from(found.key_points.as_slice()))?;
@@ -29,6 +31,7 @@ impl Engine {
     /// What follows from points given by hand: weights, groups, the error.
     pub fn fit(&self, points: &[u32], parameters: JsValue) -> Reply {
         let parameters: Parameters = parsed(parameters)?;
+        self.room_for(Step::KeyPoints(points.len()), self.open_sequence()?)?;
         let fitted = keypoints::fit_all(self.open_sequence()?, points, &parameters).map_err(sentence)?;
         let reply = describe(&fitted.weights, &fitted.groups, &fitted.fits)?;
         put(&reply, "error", &fitted.error.into())?;
