@@ -15,7 +15,9 @@ use sinew::skinning::{Rows, blend};
 use sinew::zoo::{self, Recipe};
 
 fn creature(name: &str, faces: usize) -> Sequence {
-    zoo::make(&Recipe { name: name.into(), faces, poses: 6, exact: false }).expect("a creature of that name").sequence
+    zoo::make(&Recipe { name: name.into(), faces, poses: 6, exact: false, ..Recipe::default() })
+        .expect("a creature of that name")
+        .sequence
 }
 
 fn points(positions: &[[f64; 3]]) -> Vec<DVec3> {
@@ -59,6 +61,10 @@ fn assert_sound(sequence: &Sequence, result: &KeyPoints) {
     assert_eq!(result.weights.handles, result.key_points);
     for v in 0..vertices {
         assert!((result.weights.row(v).iter().sum::<f64>() - 1.0).abs() < 1e-9, "row {v}");
+    }
+    for (fit, rounds) in result.fits.iter().zip(&result.rounds) {
+        assert_eq!(rounds.len(), fit.energies.len(), "a round has an energy");
+        assert!(rounds.last() == Some(&fit.maps) && rounds.iter().all(|maps| maps.len() == count));
     }
     for fit in &result.fits {
         assert_eq!(fit.maps.len(), count);

@@ -23,6 +23,7 @@ const operations = {
   segment: ({ parameters }, progress) => engine.segment(parameters, progress),
   parts: ({ parameters, parts }, progress) => engine.parts(parameters, parts, progress),
   export: ({ labels, colours }) => engine.export(labels, colours),
+  export_rigid: ({ labels }) => engine.export_rigid(labels),
   keypoints: ({ parameters }, progress) => engine.keypoints(parameters, progress),
   fit: ({ points, parameters }) => engine.fit(points, parameters),
   target: ({ files, recipe, options }) => (recipe ? engine.target_zoo(recipe) : engine.target(files, options)),

@@ -30,6 +30,6 @@ mod thin;
 mod watch;
 
 pub use parameters::{Parameters, Stop};
-pub use result::{Fitted, KeyPointError, KeyPoints, Replacement, Step, Tried};
+pub use result::{Fitted, KeyPointError, KeyPoints, Replacement, Rounds, Step, Tried};
 pub use select::{fit_all, select};
 pub use thin::thinned;

@@ -87,6 +87,7 @@ pub fn select(
         weights: fitted.weights,
         groups: fitted.groups,
         fits: fitted.fits,
+        rounds: fitted.rounds,
         warnings,
         seconds: watch.stop(),
     })

@@ -45,7 +45,10 @@ pub fn capacities(input: &Input<'_>, alpha: f64, smoothing: Smoothing) -> Vec<f6
 /// `pull` weighs rigidity against shortness: a region that lies on the wrong side and is explained worse by as much as
 /// the mean squared residual costs `pull` times its area, at unit diagonal, where boundary costs its length; both do not
 /// depend on how finely the mesh is divided. 0: the letter of the paper.
-pub fn smooth(input: &Input<'_>, capacity: &[f64], labels: &mut [u32], parts: usize, pull: f64) {
+///
+/// Returns #F: 1 where a face was in the band of a boundary, free to change sides.
+pub fn smooth(input: &Input<'_>, capacity: &[f64], labels: &mut [u32], parts: usize, pull: f64) -> Vec<u8> {
+    let mut free = vec![0; labels.len()];
     let moments = input.faces.moments(labels, parts);
     let mean_square = moments.iter().map(motion::residual).sum::<f64>() / labels.len().max(1) as f64
         + UNSEEN * UNSEEN * input.faces.pose_count() as f64;
@@ -86,8 +89,10 @@ pub fn smooth(input: &Input<'_>, capacity: &[f64], labels: &mut [u32], parts: us
                 labels[f as usize] = side;
                 borders.follow(graph, labels, f);
             }
+            free[f as usize] = 1;
         }
     }
+    free
 }
 
 /// The dual edges between every two parts. Where parts have moved on, some edges are of another pair by now: whoever asks

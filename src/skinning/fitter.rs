@@ -171,10 +171,22 @@ impl Fitter {
 
     /// The maps that make the rig follow `pose` (#V points, in the reference's order).
     pub fn fit(&self, pose: &[DVec3]) -> Fit {
+        self.finish(&self.target(pose), |_| ())
+    }
+
+    /// The same, with the maps of every round: one list for each of [`Fit::energies`].
+    pub fn fit_in_rounds(&self, pose: &[DVec3]) -> (Fit, Vec<Vec<DAffine3>>) {
         let target = self.target(pose);
-        let (turns, energies) = self.alternate(&target);
-        let x = self.solution(&target, &turns);
-        let error = self.error(&target, &x);
+        let mut rounds = Vec::new();
+        let fit = self.finish(&target, |turns| rounds.push(self.maps(&target.motion, &self.solution(&target, turns))));
+        (fit, rounds)
+    }
+
+    /// Alternates to the end; `each` sees the turns of every round.
+    fn finish(&self, target: &Target, each: impl FnMut(&[DMat3])) -> Fit {
+        let (turns, energies) = self.alternate(target, each);
+        let x = self.solution(target, &turns);
+        let error = self.error(target, &x);
         Fit { maps: self.maps(&target.motion, &x), energies, error }
     }
 
@@ -225,10 +237,11 @@ impl Fitter {
     }
 
     /// Local and global steps in turn: `N_gᵀ` of every group, and the energy after each round.
-    fn alternate(&self, target: &Target) -> (Vec<DMat3>, Vec<f64>) {
+    fn alternate(&self, target: &Target, mut each: impl FnMut(&[DMat3])) -> (Vec<DMat3>, Vec<f64>) {
         let mut turns = vec![DMat3::ZERO; self.groups.len()];
         let mut response = self.response(target, &turns);
         let mut energies = vec![self.energy(target, &turns, &response)];
+        each(&turns);
         for _ in 0..self.parameters.rounds {
             let next: Vec<DMat3> = self
                 .groups
@@ -245,6 +258,7 @@ impl Fitter {
             }
             (turns, response) = (next, answer);
             energies.push(energy);
+            each(&turns);
             if before - energy <= self.parameters.tolerance * before + NOTHING {
                 break;
             }

@@ -308,6 +308,18 @@ impl Stage {
         }
     }
 
+    /// Where vertices are at the moment that is shown; `None` for one that does not exist.
+    pub fn places(&self, vertices: &[u32]) -> Vec<Option<Vec3>> {
+        let moment = self.moment();
+        let maps = self.motion.maps(moment);
+        vertices.iter().map(|&v| self.motion.vertex(v, moment, &maps)).collect()
+    }
+
+    /// Where a point is on the window, and its depth.
+    pub fn project(&self, point: Vec3) -> [f32; 3] {
+        self.camera.place(&self.window, self.ball().radius, point)
+    }
+
     /// The moment that is shown.
     pub fn moment(&self) -> Moment {
         self.motion.at(self.time, self.loops)

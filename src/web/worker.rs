@@ -11,7 +11,7 @@ mod points;
 mod sequences;
 mod values;
 
-use crate::export::glb;
+use crate::export::{glb, rigid};
 use crate::import::{self, Options};
 use crate::keypoints;
 use crate::memory::{self, Step};
@@ -112,6 +112,11 @@ impl Engine {
         let result = self.segmented(&parameters, progress)?;
         let reply = describe_parts(&result)?;
         describe_steps(&reply, &result.steps)?;
+        if let Some((_, tree)) = &self.tree {
+            let (faces, weights): (Vec<_>, Vec<_>) = tree.dual_edges().unzip();
+            put(&reply, "dual", &Uint32Array::from(faces.as_flattened()))?;
+            put(&reply, "dual_weights", &single(&weights))?;
+        }
         put(&reply, "warnings", &plain(&result.warnings)?)?;
         put(&reply, "seconds", &plain(&result.seconds)?)?;
         Ok(reply)
@@ -128,6 +133,17 @@ impl Engine {
         let colours: Vec<[f32; 3]> =
             triples(colours).into_iter().map(|colour| srgb_to_linear(colour).to_array()).collect();
         Ok(Uint8Array::from(glb::parts(self.open_sequence()?, labels, &colours).as_slice()).into())
+    }
+
+    /// What is open as a skin with a joint for each of the parts `labels` (#F): `{bytes, error, rms}` as
+    /// [`Engine::export_transfer`].
+    pub fn export_rigid(&self, labels: &[u32]) -> Reply {
+        let made = rigid::rigid(self.open_sequence()?, labels).map_err(sentence)?;
+        let reply: JsValue = Object::new().into();
+        put(&reply, "bytes", &Uint8Array::from(made.bytes.as_slice()))?;
+        put(&reply, "error", &made.largest.into())?;
+        put(&reply, "rms", &made.rms.into())?;
+        Ok(reply)
     }
 
     /// Cuts the merge tree, which is made first if there is none for these parameters.
@@ -176,6 +192,7 @@ fn describe_parts(result: &Segmentation) -> Reply {
     let reply: JsValue = Object::new().into();
     put(&reply, "labels", &Uint32Array::from(result.labels.as_slice()))?;
     put(&reply, "unsmoothed", &Uint32Array::from(result.steps.unsmoothed.as_slice()))?;
+    put(&reply, "band", &Uint8Array::from(result.steps.band.as_slice()))?;
     put(&reply, "parts", &plain(&result.parts)?)?;
     put(&reply, "rigid_residual", &result.rigid_residual.into())?;
     put(&reply, "residual_before_smoothing", &result.residual_before_smoothing.into())?;

@@ -249,8 +249,7 @@ fn areas() -> Vec<Sequence> {
 fn motions() -> Vec<Sequence> {
     let (faces, points) = closed_tube(8);
     // A tube has a mirror image that is a turn of itself; one that winds like a screw has none.
-    let screw: Vec<DVec3> =
-        points.iter().map(|p| *p + DVec3::new(0.0, (1.5 * p.x).sin(), (1.5 * p.x).cos())).collect();
+    let screw: Vec<DVec3> = points.iter().map(|p| *p + DVec3::new(0.0, (1.5 * p.x).sin(), (1.5 * p.x).cos())).collect();
     let mut mirror = bent(&screw, 4);
     mirror[2].iter_mut().for_each(|p| p.x = -p.x);
     let flat: Vec<DVec3> = points.iter().map(|p| DVec3::new(p.x, p.y, 0.0)).collect();
