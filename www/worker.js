@@ -8,10 +8,12 @@ import init, { Engine } from '../pkg/worker.js';
 const PROGRESS_EVERY = 60;
 
 let engine;
+/** What the engine has of the browser's memory. @type {WebAssembly.Memory} */
+let memory;
 
 const operations = {
   start: async ({ module }) => {
-    await init({ module_or_path: module });
+    ({ memory } = await init({ module_or_path: module }));
     engine = new Engine();
     return Engine.about();
   },
@@ -46,7 +48,7 @@ async function answer({ id, operation, ...payload }) {
   } catch (error) {
     // The engine throws sentences. Anything else, such as “unreachable”, means that it is broken for good.
     if (typeof error === 'string') self.postMessage({ id, error });
-    else self.postMessage({ id, crash: String(error) });
+    else self.postMessage({ id, crash: String(error), memory: memory?.buffer.byteLength ?? 0 });
   }
 }
 

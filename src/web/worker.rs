@@ -14,6 +14,7 @@ mod values;
 use crate::export::{glb, rigid};
 use crate::import::{self, Options};
 use crate::keypoints;
+use crate::memory::{self, Step};
 use crate::segmentation::{Parameters, Segmentation, Segmenter, Steps};
 use crate::sequence::Sequence;
 use crate::transfer::propose::Proposer;
@@ -158,11 +159,17 @@ impl Engine {
     }
 
     fn grow(&self, parameters: &Parameters, progress: &Function) -> Result<Segmenter, JsValue> {
+        self.room_for(Step::Segmentation, self.open_sequence()?)?;
         Segmenter::new(self.open_sequence()?, parameters, &mut watcher(progress)).map_err(sentence)
     }
 
     fn open_sequence(&self) -> Result<&Sequence, JsValue> {
         self.sequence.as_ref().ok_or_else(|| sentence("Nothing is open yet."))
+    }
+
+    /// Refuses a step for which there is not memory enough, beside what is open.
+    fn room_for(&self, step: Step, of: &Sequence) -> Result<(), JsValue> {
+        memory::check(step, of, self.sequence.iter().chain(&self.target), memory::LIMIT).map_err(sentence)
     }
 
     fn replace(&mut self, sequence: Sequence) {
