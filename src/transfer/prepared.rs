@@ -87,12 +87,12 @@ impl Prepared {
         let registration = Registration::new(&there).map_err(|_| TransferError::Degenerate { side: "target" })?;
         steps.end("systems", 0.3)?;
         let rig = match parameters.method {
-            Method::Bones => Rig::new(&here, &poses, parameters.bones.max(1)),
+            Method::Bones | Method::Gradients | Method::Posed => Rig::new(&here, &poses, parameters.bones.max(1)),
             Method::Direct | Method::Relative => Rig::default(),
         };
         steps.end("bones", 0.9)?;
         let weights = match parameters.method {
-            Method::Bones => None,
+            Method::Bones | Method::Gradients | Method::Posed => None,
             Method::Direct | Method::Relative => Some([
                 Biharmonic::new(source.faces(), source.reference())?,
                 Biharmonic::new(target.faces(), target.reference())?,
@@ -150,7 +150,7 @@ impl Prepared {
         let points: Vec<(DVec3, DVec3)> = pairs.iter().map(|pair| self.points(pair)).collect();
         let alignment = align(&points);
         let skin = match self.parameters.method {
-            Method::Bones => {
+            Method::Bones | Method::Gradients | Method::Posed => {
                 let last = self.last.take().filter(|_| quick);
                 let bent = self.bend(&pairs, &points, alignment, last);
                 steps.end("correspondence", 0.8)?;

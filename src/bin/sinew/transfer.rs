@@ -1,10 +1,15 @@
 //! `sinew transfer`: a second mesh moves like the first.
 
+mod compare;
+mod faces;
+mod pairs;
+
 use crate::Refusal;
 use crate::input::{Input, print_warnings};
 use crate::output::{self, counted, say};
 use clap::{Args, ValueEnum};
 use glam::DVec3;
+use pairs::pairs;
 use serde_json::{Map, Value, json};
 use sinew::clock;
 use sinew::import::{File, Imported, Options, natural_order, open_in_order};
@@ -26,8 +31,8 @@ pub struct Transfer {
     /// The mesh that is to move: its reference pose
     #[arg(long, value_name = "MESH")]
     target: PathBuf,
-    /// Corresponding vertices: [{"source": 12, "target": 34}, …]
-    #[arg(long, value_name = "FILE.json")]
+    /// Corresponding vertices: [{"source": 12, "target": 34}, …], or lines of two numbers (.cons)
+    #[arg(long, value_name = "FILE")]
     pairs: PathBuf,
     /// The family of methods
     #[arg(long, value_enum, default_value_t = MethodArgument::Biharmonic)]
@@ -50,12 +55,22 @@ pub struct Transfer {
     /// The target's true poses, to measure the result against: files, or a folder of files in natural order
     #[arg(long, value_name = "FILE", num_args = 1..)]
     truth: Vec<PathBuf>,
+    /// Transfer by every method and write how far each is from the truth
+    #[arg(long, value_name = "FILE.json", requires = "truth")]
+    compare: Option<PathBuf>,
+    /// By gradients or posed: vertices of the target that go exactly as far as the source does there, as feet that stand
+    #[arg(long, value_name = "VERTEX", value_delimiter = ',')]
+    pin: Vec<u32>,
 }
 
 #[derive(Clone, Copy, PartialEq, ValueEnum)]
 enum MethodArgument {
     /// By biharmonic weights
     Biharmonic,
+    /// What each face does, asked of the target's faces (Sumner & Popović 2004)
+    Gradients,
+    /// The same, after the target was turned into the source's posture part by part
+    Posed,
 }
 
 #[derive(Clone, Copy, PartialEq, ValueEnum)]
@@ -76,7 +91,13 @@ impl Transfer {
         let target = mesh(std::slice::from_ref(&self.target))?;
         let pairs = pairs(&self.pairs)?;
         let reading = clock::seconds() - start;
+        if let Some(path) = &self.compare {
+            return self.run_comparison(path, &source, &target, &pairs);
+        }
         let parameters = self.parameters();
+        if parameters.method.moves_vertices() {
+            return self.run_by_faces(&source, &target, &pairs, &parameters, reading);
+        }
         let result = transfer(&source.sequence, &target.sequence, &pairs, &parameters, &mut Silent)?;
         let begun = clock::seconds();
         let positions = result.poses(target.sequence.reference());
@@ -99,15 +120,17 @@ impl Transfer {
 
     fn parameters(&self) -> Parameters {
         let default = Parameters::default();
-        // There is one family so far.
-        let MethodArgument::Biharmonic = self.method;
         Parameters {
-            method: match self.variant {
-                Variant::Default => default.method,
-                Variant::Direct => Method::Direct,
-                Variant::Relative => Method::Relative,
+            method: match (self.method, self.variant) {
+                (MethodArgument::Gradients, _) => Method::Gradients,
+                (MethodArgument::Posed, _) => Method::Posed,
+                (MethodArgument::Biharmonic, Variant::Default) => default.method,
+                (MethodArgument::Biharmonic, Variant::Direct) => Method::Direct,
+                (MethodArgument::Biharmonic, Variant::Relative) => Method::Relative,
             },
+            pinned: self.pin.clone(),
             bones: self.bones.map_or(default.bones, |bones| bones as usize),
+            ..default
         }
     }
 }
@@ -123,14 +146,6 @@ fn mesh(paths: &[PathBuf]) -> Result<Imported, Refusal> {
     };
     let files = paths.iter().map(read).collect::<Result<Vec<_>, _>>()?;
     Ok(open_in_order(&files, &Options { weld: false, ..Options::default() })?)
-}
-
-fn pairs(path: &Path) -> Result<Vec<Pair>, Refusal> {
-    let name = path.display();
-    let text = std::fs::read_to_string(path).map_err(|error| Refusal(format!("{name} cannot be read: {error}")))?;
-    serde_json::from_str(&text).map_err(|error| {
-        Refusal(format!("{name} is no list of pairs such as [{{\"source\": 12, \"target\": 34}}]: {error}"))
-    })
 }
 
 /// The target with the poses of the source.
@@ -154,6 +169,12 @@ struct Errors {
     of_poses: Vec<f64>,
     /// The share of vertices and poses within each of [`BOUNDS`].
     within: Vec<f64>,
+}
+
+impl Errors {
+    fn json(&self) -> Value {
+        json!({ "mean": self.mean, "of_poses": self.of_poses, "bounds": BOUNDS, "within": self.within })
+    }
 }
 
 /// The truth's files: those of a folder in natural order, without its reference pose.
@@ -280,14 +301,6 @@ fn report(
     let total = reading + blending + result.seconds.iter().map(|(_, time)| time).sum::<f64>();
     seconds.insert("total".into(), json!(total));
     let warnings: Vec<_> = source.warnings.iter().chain(&target.warnings).chain(&result.warnings).collect();
-    let truth = errors.map(|errors| {
-        json!({
-            "mean": errors.mean,
-            "of_poses": errors.of_poses,
-            "bounds": BOUNDS,
-            "within": errors.within,
-        })
-    });
     json!({
         "source": source.sequence.name(),
         "target": target.sequence.name(),
@@ -304,7 +317,7 @@ fn report(
         "size": result.alignment.size,
         "turn": result.alignment.turn.to_cols_array_2d(),
         "seconds": seconds,
-        "error": truth,
+        "error": errors.map(Errors::json),
         "warnings": warnings,
     })
 }
