@@ -17,7 +17,7 @@ type Mesh = (Vec<[u32; 3]>, Vec<DVec3>);
 
 /// A horse of about so many vertices.
 fn made(vertices: usize) -> Mesh {
-    let recipe = Recipe { name: "horse".into(), faces: 2 * vertices, poses: 1, exact: false };
+    let recipe = Recipe { name: "horse".into(), faces: 2 * vertices, poses: 1, exact: false, ..Recipe::default() };
     let sequence = zoo::make(&recipe).expect("a creature of that name").sequence;
     (sequence.faces().to_vec(), sequence.reference().to_vec())
 }

@@ -202,7 +202,13 @@ fn a_creature_goes_out_and_comes_back() {
         ["zoo", "horse", "--faces", "3000", "--poses", "6", "--exact", "--out", "horse.glb", "--labels", "true.txt"];
     let output = sinew(&folder, &arguments);
     assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
-    let recipe = sinew::zoo::Recipe { name: "horse".into(), faces: 3000, poses: 6, exact: true };
+    let recipe = sinew::zoo::Recipe {
+        name: "horse".into(),
+        faces: 3000,
+        poses: 6,
+        exact: true,
+        ..sinew::zoo::Recipe::default()
+    };
     let creature = sinew::zoo::make(&recipe).unwrap();
     let bytes = std::fs::read(folder.join("horse.glb")).unwrap();
     let file = sinew::import::File { name: "horse.glb".into(), bytes };

@@ -15,7 +15,9 @@ use sinew::skinning::{Rows, blend};
 use sinew::zoo::{self, Recipe};
 
 fn creature(name: &str, faces: usize) -> Sequence {
-    zoo::make(&Recipe { name: name.into(), faces, poses: 6, exact: false }).expect("a creature of that name").sequence
+    zoo::make(&Recipe { name: name.into(), faces, poses: 6, exact: false, ..Recipe::default() })
+        .expect("a creature of that name")
+        .sequence
 }
 
 fn points(positions: &[[f64; 3]]) -> Vec<DVec3> {

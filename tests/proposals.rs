@@ -20,7 +20,8 @@ struct Case {
 }
 
 fn creature(name: &str) -> Creature {
-    zoo::make(&Recipe { name: name.into(), faces: 12_000, poses: 1, exact: false }).expect("a creature of that name")
+    zoo::make(&Recipe { name: name.into(), faces: 12_000, poses: 1, exact: false, ..Recipe::default() })
+        .expect("a creature of that name")
 }
 
 fn zoo_case(a: &str, b: &str) -> Case {

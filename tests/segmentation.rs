@@ -18,7 +18,8 @@ use sinew::sequence::{Pose, Sequence};
 use sinew::zoo::{self, Creature, Recipe};
 
 fn creature(name: &str, faces: usize, exact: bool) -> Creature {
-    zoo::make(&Recipe { name: name.into(), faces, poses: 12, exact }).expect("a creature of that name")
+    zoo::make(&Recipe { name: name.into(), faces, poses: 12, exact, ..Recipe::default() })
+        .expect("a creature of that name")
 }
 
 fn by_default(sequence: &Sequence) -> Segmentation {

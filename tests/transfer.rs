@@ -14,7 +14,8 @@ use sinew::zoo::{self, Creature, Recipe};
 use std::collections::BTreeMap;
 
 fn creature(name: &str, faces: usize) -> Creature {
-    zoo::make(&Recipe { name: name.into(), faces, poses: 12, exact: false }).expect("a creature of that name")
+    zoo::make(&Recipe { name: name.into(), faces, poses: 12, exact: false, ..Recipe::default() })
+        .expect("a creature of that name")
 }
 
 fn by_default(source: &Sequence, target: &Sequence, pairs: &[Pair]) -> Transfer {

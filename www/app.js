@@ -1,7 +1,8 @@
 /**
  * The state of the page and what can be done to it. Everything that shows something listens to the events named
  * after what changed: `source`, `result`, `parameters`, `step`, `view`, `busy`, `notice`, `panel`, `link`, `doc`
- * (what can be undone), `place` (in a stage), `points` (what follows from the key points), `target`, `motion` (of the target), `selected`.
+ * (what can be undone), `painted` (the figures), `place` (in a stage), `points` (what follows from the key points), `target`,
+ * `motion` (of the target), `selected`.
  *
  * What can be undone is one small immutable object, {@link Doc}; all else follows from it or is only looked at.
  */
@@ -433,6 +434,7 @@ export class App extends EventTarget {
       this.stage.boundaries = false;
       this.stage.paint(['paint_clay']);
     }
+    this.changed('painted');
   }
 
   get #looksAtParts() {

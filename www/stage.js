@@ -390,6 +390,13 @@ export class Stage extends EventTarget {
     this.#tellCamera(method, values);
   }
 
+  /** Turns and comes nearer until some faces are seen. @param {Uint32Array} faces */
+  look(faces) {
+    if (!this.view || !faces.length) return;
+    this.view.frame_faces(faces);
+    this.camera = this.view.camera();
+  }
+
   /** Six numbers that show any figure in the same way: target x, y, z, yaw, pitch, distance, in radii of its motion. */
   get camera() {
     return this.view?.camera() ?? this.kept.camera;

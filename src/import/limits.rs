@@ -6,7 +6,7 @@ use super::ImportError;
 pub const LIMIT: u64 = if cfg!(target_arch = "wasm32") { 1 << 30 } else { 2 << 30 };
 
 /// What is left of the limit.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct Budget {
     /// The file's name, for sentences.
     name: String,
@@ -17,6 +17,11 @@ impl Budget {
     /// The whole limit, for the file called `name`.
     pub fn new(name: &str) -> Self {
         Self { name: name.to_owned(), left: LIMIT }
+    }
+
+    /// Bytes that are left.
+    pub fn left(&self) -> u64 {
+        self.left
     }
 
     /// Takes `count` items of `bytes` bytes for `what`, or says that there is not room.
@@ -32,6 +37,31 @@ impl Budget {
                 size(LIMIT)
             ))),
         }
+    }
+
+    /// Takes `bytes` for one more entry of a mesh whose size shows only as it is read.
+    pub fn grow(&mut self, bytes: u64) -> Result<(), ImportError> {
+        self.left = self.left.checked_sub(bytes).ok_or_else(|| {
+            ImportError(format!(
+                "{} has more vertices and faces than fit into the {} allowed here; use a simpler mesh",
+                self.name,
+                size(LIMIT)
+            ))
+        })?;
+        Ok(())
+    }
+
+    /// Takes `bytes` for `what`, which is stored compressed.
+    pub fn unpack(&mut self, bytes: u64, what: &str) -> Result<(), ImportError> {
+        self.left = self.left.checked_sub(bytes).ok_or_else(|| {
+            ImportError(format!(
+                "{what} has {} when it is unpacked, more than the {} left of the {} allowed here",
+                size(bytes),
+                size(self.left),
+                size(LIMIT)
+            ))
+        })?;
+        Ok(())
     }
 
     /// Checks that so many poses (the reference included) of so many vertices fit in; 24 bytes a vertex.

@@ -1,23 +1,31 @@
 //! From files to a [`Sequence`], with warnings.
 //!
-//! [`open`] takes the files as a person gives them (one glTF or GLB with whatever lies beside it, or numbered
-//! OBJ, OFF or PLY files) and returns a checked sequence, or one sentence that says what is wrong.
+//! [`open`] takes the files as a person gives them (one glTF or GLB with whatever lies beside it, numbered OBJ, OFF,
+//! PLY or STL files, or a zip archive of any of these) and returns a checked sequence, or one sentence that says what
+//! is wrong.
 
+mod archive;
 pub mod gltf;
 mod limits;
 mod natural;
 mod numbered;
 mod obj;
 mod off;
+mod off_binary;
 mod ply;
 mod polygons;
+mod seams;
+mod stl;
 mod text;
 
+pub use archive::may_be_needed;
 pub use natural::natural_order;
 
 use crate::sequence::Sequence;
 use crate::warning::Warning;
+use limits::Budget;
 use serde::{Deserialize, Serialize};
+use std::borrow::Cow;
 
 /// A file as it was given: its name (possibly with folders, `/` between them) and its bytes.
 #[derive(Clone, Debug)]
@@ -38,7 +46,7 @@ pub struct Options {
     pub sampling: Sampling,
     /// Which pose is the reference.
     pub reference: Reference,
-    /// Join vertices that agree in every pose (glTF only: seams of UVs and normals).
+    /// Join vertices that agree in every pose (glTF only: seams of UVs and normals; STL is welded in any case).
     pub weld: bool,
 }
 
@@ -91,7 +99,7 @@ pub struct Clip {
 pub struct Imported {
     /// The mesh and its poses.
     pub sequence: Sequence,
-    /// The animations that the file has (empty for OBJ, OFF and PLY).
+    /// The animations that the file has (empty for OBJ, OFF, PLY and STL).
     pub clips: Vec<Clip>,
     /// The clip that was sampled: an index into `clips`.
     pub clip: Option<usize>,
@@ -109,47 +117,109 @@ pub struct ImportError(pub String);
 
 /// Reads the given files, which may be in any order, as when they are dropped on a page.
 ///
-/// One glTF or GLB (with its buffers beside it), or several OBJ, OFF or PLY files: the first in [`natural_order`]
-/// is the reference pose, the others are its poses. Files that are neither are passed over.
+/// One glTF or GLB (with its buffers beside it), or several OBJ, OFF, PLY or STL files: the first in
+/// [`natural_order`] is the reference pose, the others are its poses. A zip archive stands for what is in it. Files
+/// that are none of these are passed over.
 pub fn open(files: &[File], options: &Options) -> Result<Imported, ImportError> {
+    let unpacked = unpacked(files)?;
+    let files = unpacked.as_ref();
     let mut order: Vec<&File> = files.iter().collect();
     natural::sort(&mut order);
     open_listed(&order, files, options)
 }
 
-/// Reads the given files in the given order, as on a command line: of OBJ, OFF and PLY files the first is the
-/// reference pose, the others are its poses. Otherwise as [`open`].
+/// Reads the given files in the given order, as on a command line: of OBJ, OFF, PLY and STL files the first is the
+/// reference pose, the others are its poses. Otherwise as [`open`]; what is in an archive comes in natural order.
 pub fn open_in_order(files: &[File], options: &Options) -> Result<Imported, ImportError> {
+    let unpacked = unpacked(files)?;
+    let files = unpacked.as_ref();
     open_listed(&files.iter().collect::<Vec<_>>(), files, options)
 }
 
-fn open_listed(order: &[&File], files: &[File], options: &Options) -> Result<Imported, ImportError> {
-    let mut documents: Vec<&File> = Vec::new();
-    let mut meshes = Vec::new();
-    for &file in order.iter().filter(|file| !is_hidden(&file.name)) {
+/// Reads more files for a mesh that was opened before from `still` and stands still: its poses, where they are meshes
+/// of the same kind, with as many vertices and faces. Otherwise as [`open`] with `more` alone.
+///
+/// Returns with the result whether the poses joined the mesh.
+pub fn open_more(still: &[File], more: &[File], options: &Options) -> Result<(Imported, bool), ImportError> {
+    let (still, more) = (unpacked(still)?, unpacked(more)?);
+    let (still, more) = (still.as_ref(), more.as_ref());
+    let mut poses: Vec<&File> = more.iter().collect();
+    natural::sort(&mut poses);
+    let (resting, moving) = (sorted_out(still.iter()), sorted_out(poses.iter().copied()));
+    if let ([], [resting]) = (resting.documents.as_slice(), resting.meshes.as_slice())
+        && moving.documents.is_empty()
+        && !moving.meshes.iter().any(|(file, _)| last_part(&file.name) == last_part(&resting.0.name))
+    {
+        let all: Vec<_> = [resting].into_iter().chain(&moving.meshes).copied().collect();
+        match numbered::open(&all) {
+            Ok(joined) if all.len() > 1 && !joined.warnings.iter().any(|w| w.code == numbered::DIFFERENT) => {
+                return Ok((joined, true));
+            }
+            _ => {}
+        }
+    }
+    open_listed(&poses, more, options).map(|imported| (imported, false))
+}
+
+/// The files, with what is in archives in place of these.
+fn unpacked(files: &[File]) -> Result<Cow<'_, [File]>, ImportError> {
+    if !files.iter().any(|file| archive::is_zip(&file.bytes)) {
+        return Ok(Cow::Borrowed(files));
+    }
+    let mut budget = Budget::new("what was given");
+    let mut all = Vec::new();
+    for file in files {
+        if archive::is_zip(&file.bytes) {
+            let mut inside = archive::unpack(file, &mut budget)?;
+            natural_order(&mut inside);
+            all.extend(inside);
+        } else {
+            all.push(file.clone());
+        }
+    }
+    Ok(Cow::Owned(all))
+}
+
+/// The files that can be read, by what they are.
+struct SortedOut<'a> {
+    documents: Vec<&'a File>,
+    meshes: Vec<(&'a File, numbered::Format)>,
+}
+
+fn sorted_out<'a>(files: impl Iterator<Item = &'a File>) -> SortedOut<'a> {
+    let mut found = SortedOut { documents: Vec::new(), meshes: Vec::new() };
+    for file in files.filter(|file| !is_hidden(&file.name)) {
         match kind(file) {
-            Some(Kind::Gltf) => documents.push(file),
-            Some(Kind::Mesh(format)) => meshes.push((file, format)),
+            Some(Kind::Gltf) => found.documents.push(file),
+            Some(Kind::Mesh(format)) => found.meshes.push((file, format)),
             None => {}
         }
     }
-    match (documents.as_slice(), meshes.as_slice()) {
+    found
+}
+
+fn open_listed(order: &[&File], files: &[File], options: &Options) -> Result<Imported, ImportError> {
+    let found = sorted_out(order.iter().copied());
+    match (found.documents.as_slice(), found.meshes.as_slice()) {
         ([document], _) => gltf::open(document, files, options),
         ([first, second, ..], _) => Err(ImportError(format!(
             "several glTF files were given ({}, {}, …); give one at a time",
             first.name, second.name
         ))),
         ([], []) => Err(ImportError(nothing_to_read(files))),
-        ([], _) => numbered::open(&meshes),
+        ([], meshes) => numbered::open(meshes),
     }
 }
 
 fn nothing_to_read(files: &[File]) -> String {
     match files {
-        [] => "no file was given; give one glTF or GLB, or OBJ, OFF or PLY files".into(),
-        [file] => format!("{} is no glTF, GLB, OBJ, OFF or PLY file, which is what can be read", file.name),
+        [] => "no file was given; give one glTF or GLB, or OBJ, OFF, PLY or STL files".into(),
+        [file] => format!("{} is no glTF, GLB, OBJ, OFF, PLY, STL or zip file, which is what can be read", file.name),
         _ => {
-            format!("none of the {} files is a glTF, GLB, OBJ, OFF or PLY file, which is what can be read", files.len())
+            format!(
+                "none of the {} files is a glTF, GLB, OBJ, OFF, PLY or STL file, which is what can be read",
+                files.len()
+            )
         }
     }
 }
@@ -169,6 +239,7 @@ fn kind(file: &File) -> Option<Kind> {
         Some("obj") => Some(Kind::Mesh(Format::Obj)),
         Some("off") => Some(Kind::Mesh(Format::Off)),
         Some("ply") => Some(Kind::Mesh(Format::Ply)),
+        Some("stl") => Some(Kind::Mesh(Format::Stl)),
         _ if file.bytes.starts_with(b"ply\n") || file.bytes.starts_with(b"ply\r") => Some(Kind::Mesh(Format::Ply)),
         _ if file.bytes.starts_with(b"OFF") => Some(Kind::Mesh(Format::Off)),
         _ => None,
@@ -177,7 +248,12 @@ fn kind(file: &File) -> Option<Kind> {
 
 /// True for what file managers leave in folders.
 fn is_hidden(name: &str) -> bool {
-    name.split(['/', '\\']).any(|part| (part.starts_with('.') && part != "." && part != "..") || part == "__MACOSX")
+    last_part(name).starts_with('.') || name.split(['/', '\\']).any(|part| part == "__MACOSX")
+}
+
+/// The last part of a path.
+fn last_part(path: &str) -> &str {
+    path.rsplit(['/', '\\']).next().unwrap_or(path)
 }
 
 /// `1 face was`, `2 faces were`.

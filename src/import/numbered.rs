@@ -1,8 +1,8 @@
-//! OBJ, OFF and PLY files with the same faces, as the poses of one sequence.
+//! OBJ, OFF, PLY and STL files with the same faces, as the poses of one sequence.
 
 use super::limits::Budget;
 use super::polygons::PolygonMesh;
-use super::{File, ImportError, Imported, counted, obj, off, ply};
+use super::{File, ImportError, Imported, counted, obj, off, ply, seams, stl};
 use crate::sequence::{Pose, Sequence};
 use crate::warning::Warning;
 
@@ -18,17 +18,22 @@ pub enum Format {
     Off,
     /// Stanford PLY.
     Ply,
+    /// STL.
+    Stl,
 }
+
+/// The warning that files name other vertices in their faces.
+pub const DIFFERENT: &str = "different-faces";
 
 /// Reads files as poses: the first is the reference, the others its poses in the given order.
 pub fn open(files: &[(&File, Format)]) -> Result<Imported, ImportError> {
     let Some((first, poses)) = files.split_first() else {
-        return Err(ImportError("no OBJ, OFF or PLY file was given".into()));
+        return Err(ImportError("no OBJ, OFF, PLY or STL file was given".into()));
     };
     let name = &first.0.name;
     let mut warnings = Vec::new();
-    let reference = read(first)?;
-    let (faces, polygons) = reference.triangulate();
+    let mut reference = read(first)?;
+    let (mut faces, mut polygons) = reference.triangulate();
     if faces.is_empty() {
         return Err(ImportError(format!("{name} has no faces; Sinew needs a surface, not only points")));
     }
@@ -46,7 +51,7 @@ pub fn open(files: &[(&File, Format)]) -> Result<Imported, ImportError> {
     }
     if let Some(example) = different.first() {
         warnings.push(Warning::new(
-            "different-faces",
+            DIFFERENT,
             format!(
                 "The faces of {} (such as {example}) name other vertices than those of {name}; the faces of {name} \
                  were taken, which is right only if the vertices are the same ones in the same order.",
@@ -61,6 +66,15 @@ pub fn open(files: &[(&File, Format)]) -> Result<Imported, ImportError> {
         ));
     }
     let input_faces = reference.len();
+    if first.1 == Format::Stl {
+        seams::weld_seams(&mut faces, &mut reference.positions, &mut others, None);
+        if let Some(stay) = seams::drop_collapsed(&mut faces, &mut warnings) {
+            polygons = stay.iter().map(|&f| polygons[f as usize]).collect();
+        }
+        if faces.is_empty() {
+            return Err(ImportError(format!("all triangles of {name} are collapsed to a point or a line")));
+        }
+    }
     let cut = faces.len() != input_faces || polygons.iter().enumerate().any(|(f, &p)| f != p as usize);
     let wrong = |error: crate::sequence::SequenceError| ImportError(format!("{name}: {error}"));
     let paths: Vec<&str> = files.iter().map(|(file, _)| file.name.as_str()).collect();
@@ -76,6 +90,7 @@ fn read((file, format): &(&File, Format)) -> Result<PolygonMesh, ImportError> {
         Format::Obj => obj::read(&file.name, &file.bytes),
         Format::Off => off::read(&file.name, &file.bytes),
         Format::Ply => ply::read(&file.name, &file.bytes),
+        Format::Stl => stl::read(&file.name, &file.bytes),
     }?;
     mesh.check(&file.name)?;
     Ok(mesh)

@@ -9,7 +9,7 @@ use glam::DVec3;
 /// Reads an OBJ file.
 pub fn read(name: &str, bytes: &[u8]) -> Result<PolygonMesh, ImportError> {
     let mut lines = Lines::new(name, bytes);
-    let mut mesh = PolygonMesh::default();
+    let mut mesh = PolygonMesh::new(name);
     let mut joined = Vec::new();
     while let Some(line) = lines.next_line() {
         // A line that ends in a backslash goes on in the next.
@@ -35,12 +35,12 @@ fn statement(lines: &Lines, line: &[u8], mesh: &mut PolygonMesh) -> Result<(), I
     match words.next() {
         Some(b"v") => {
             let mut coordinate = || lines.number(words.next());
-            mesh.positions.push(DVec3::new(coordinate()?, coordinate()?, coordinate()?));
+            mesh.vertex(DVec3::new(coordinate()?, coordinate()?, coordinate()?))?;
         }
         Some(b"f" | b"fo") => {
             let corners = words.map(|word| corner(lines, word, mesh.positions.len()));
             let corners = corners.collect::<Result<Vec<u32>, _>>()?;
-            mesh.push(corners);
+            mesh.push(corners)?;
         }
         _ => {}
     }

@@ -45,12 +45,13 @@ pub fn read(name: &str, bytes: &[u8]) -> Result<PolygonMesh, ImportError> {
     let mut lines = Lines::new(name, bytes);
     let (encoding, elements) = header(&mut lines)?;
     let mut body = Body { name, encoding, left: lines.rest() };
-    let mut mesh = PolygonMesh::default();
+    let mut mesh = PolygonMesh::new(name);
     for element in &elements {
         check_count(name, element, encoding, body.left.len())?;
         match element.name.as_str() {
             "vertex" => vertices(&mut body, element, &mut mesh)?,
             "face" => faces(&mut body, element, &mut mesh)?,
+            "tristrips" => strips(&mut body, element, &mut mesh)?,
             _ => body.each_row(element, |_, _| Ok(()))?,
         }
     }
@@ -154,8 +155,7 @@ fn vertices(body: &mut Body, element: &Element, mesh: &mut PolygonMesh) -> Resul
         if !position.is_finite() {
             return Err(at.wrong("has a coordinate that is not a finite number"));
         }
-        mesh.positions.push(position);
-        Ok(())
+        mesh.vertex(position)
     })
 }
 
@@ -170,10 +170,36 @@ fn faces(body: &mut Body, element: &Element, mesh: &mut PolygonMesh) -> Result<(
             if whole { Ok(value as u32) } else { Err(at.wrong(&format!("names vertex {value}"))) }
         };
         let corners = row.get(indices).into_iter().flatten().map(vertex).collect::<Result<Vec<u32>, _>>()?;
-        mesh.push(corners);
+        mesh.push(corners)
+    })
+}
+
+/// Triangle strips, as scanned models have them: one list of vertices, a negative number between two strips.
+fn strips(body: &mut Body, element: &Element, mesh: &mut PolygonMesh) -> Result<(), ImportError> {
+    let Some(indices) = element.properties.iter().position(|p| p.name == "vertex_indices" && p.count.is_some()) else {
+        return Err(ImportError(format!("the triangle strips of {} have no list vertex_indices", body.name)));
+    };
+    body.each_row(element, |row, at| {
+        let values = row.get(indices).map(Vec::as_slice).unwrap_or_default();
+        for strip in values.split(|&value| value < 0.0) {
+            for (number, corners) in strip.windows(3).enumerate() {
+                let [a, b, c] = [corners[0], corners[1], corners[2]];
+                // Every other triangle of a strip turns the other way round.
+                let turned = if number % 2 == 0 { [a, b, c] } else { [b, a, c] };
+                if let Some(value) = turned.iter().find(|v| v.fract() != 0.0 || **v > f64::from(u32::MAX)) {
+                    return Err(at.wrong(&format!("names vertex {value}")));
+                }
+                if a != b && b != c && c != a {
+                    mesh.push(turned.map(|v| v as u32))?;
+                }
+            }
+        }
         Ok(())
     })
 }
+
+/// The most entries of one list; those of a model that was scanned as one strip are fewer.
+const LONGEST_LIST: f64 = (1 << 25) as f64;
 
 /// What follows the header, read from the front.
 struct Body<'a> {
@@ -227,7 +253,9 @@ impl Body<'_> {
     fn length(&mut self, kind: Number, each: Number, place: &Place) -> Result<usize, ImportError> {
         let length = self.number(kind, place)?;
         let each = if self.encoding == Encoding::Text { 1 } else { each.size() };
-        let fits = length.fract() == 0.0 && length >= 0.0 && length * each as f64 <= self.left.len() as f64;
+        let fits = length.fract() == 0.0
+            && (0.0..=LONGEST_LIST).contains(&length)
+            && length * each as f64 <= self.left.len() as f64;
         if fits { Ok(length as usize) } else { Err(place.wrong(&format!("claims a list of {length} entries"))) }
     }
 
@@ -321,6 +349,16 @@ mod tests {
         assert_eq!((text.len(), text.polygon(0), text.polygon(1)), (2, &[0, 1, 2, 3][..], &[0, 1, 2][..]));
         assert_eq!(read("a.ply", &binary(false)).as_ref(), Ok(&text));
         assert_eq!(read("a.ply", &binary(true)).as_ref(), Ok(&text));
+    }
+
+    #[test]
+    fn strips_are_cut_into_triangles() {
+        let text = "ply\nformat ascii 1.0\nelement vertex 5\nproperty float x\nproperty float y\nproperty float z\n\
+            element tristrips 1\nproperty list int int vertex_indices\nend_header\n\
+            0 0 0\n1 0 0\n0 1 0\n1 1 0\n0 2 0\n9 0 1 2 3 3 -1 2 3 4\n";
+        let mesh = read("a.ply", text.as_bytes()).unwrap();
+        let all: Vec<_> = (0..mesh.len()).map(|p| mesh.polygon(p).to_vec()).collect();
+        assert_eq!(all, [[0, 1, 2], [2, 1, 3], [2, 3, 4]]);
     }
 
     #[test]

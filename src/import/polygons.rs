@@ -1,6 +1,7 @@
-//! Polygon meshes as OBJ, OFF and PLY files have them, and their triangles.
+//! Polygon meshes as OBJ, OFF, PLY and STL files have them, and their triangles.
 
 use super::ImportError;
+use super::limits::Budget;
 use glam::{DVec2, DVec3};
 
 /// Vertices and polygons of one file, in the file's own order.
@@ -9,25 +10,44 @@ pub struct PolygonMesh {
     /// #V positions.
     pub positions: Vec<DVec3>,
     /// #P + 1 starts of the polygons' corners.
-    starts: Vec<u32>,
+    pub starts: Vec<u32>,
     /// Vertex numbers of all polygons' corners.
     corners: Vec<u32>,
+    /// What the mesh may still take.
+    budget: Budget,
 }
+
+/// Bytes that a position, a polygon and a corner take while a mesh is read, cut into triangles, and kept; twice what
+/// they take in the end, as lists that grow are copied.
+const POSITION: u64 = 48;
+const POLYGON: u64 = 8;
+const CORNER: u64 = 40;
 
 /// Polygons of more corners are cut as a fan: cutting ears takes cubic time at the worst.
 const EARS: usize = 64;
 
-impl Default for PolygonMesh {
-    fn default() -> Self {
-        Self { positions: Vec::new(), starts: vec![0], corners: Vec::new() }
-    }
-}
-
 impl PolygonMesh {
-    /// Appends a polygon.
-    pub fn push(&mut self, polygon: impl IntoIterator<Item = u32>) {
-        self.corners.extend(polygon);
+    /// An empty mesh, for the file called `name`.
+    pub fn new(name: &str) -> Self {
+        Self { positions: Vec::new(), starts: vec![0], corners: Vec::new(), budget: Budget::new(name) }
+    }
+
+    /// Appends a vertex, if there is room.
+    pub fn vertex(&mut self, position: DVec3) -> Result<(), ImportError> {
+        self.budget.grow(POSITION)?;
+        self.positions.push(position);
+        Ok(())
+    }
+
+    /// Appends a polygon, if there is room.
+    pub fn push(&mut self, polygon: impl IntoIterator<Item = u32>) -> Result<(), ImportError> {
+        self.budget.grow(POLYGON)?;
+        for corner in polygon {
+            self.budget.grow(CORNER)?;
+            self.corners.push(corner);
+        }
         self.starts.push(self.corners.len() as u32);
+        Ok(())
     }
 
     /// Number of polygons.
@@ -148,8 +168,8 @@ mod tests {
 
     fn flat(points: &[(f64, f64)]) -> PolygonMesh {
         let positions = points.iter().map(|&(x, y)| DVec3::new(x, y, 0.0)).collect();
-        let mut mesh = PolygonMesh { positions, ..PolygonMesh::default() };
-        mesh.push(0..points.len() as u32);
+        let mut mesh = PolygonMesh { positions, ..PolygonMesh::new("flat") };
+        mesh.push(0..points.len() as u32).expect("room");
         mesh
     }
 
@@ -176,16 +196,16 @@ mod tests {
             assert_eq!(flat(&points).triangulate().0.len(), 7);
         }
         let mut mesh = flat(&[(0., 0.), (1., 0.), (0., 1.)]);
-        mesh.push([0, 1]);
-        mesh.push([]);
-        mesh.push([2, 1, 0]);
+        for polygon in [&[0, 1][..], &[], &[2, 1, 0]] {
+            mesh.push(polygon.iter().copied()).expect("room");
+        }
         assert_eq!(mesh.triangulate(), (vec![[0, 1, 2], [2, 1, 0]], vec![0, 3]));
     }
 
     #[test]
     fn checks_indices() {
         let mut mesh = flat(&[(0., 0.), (1., 0.), (0., 1.)]);
-        mesh.push([0, 1, 3]);
+        mesh.push([0, 1, 3]).expect("room");
         let why = mesh.check("a.obj").unwrap_err().0;
         assert!(why.contains("face 2") && why.contains("vertex 4") && why.contains("3 vertices"), "{why}");
         mesh.positions.push(DVec3::NAN);

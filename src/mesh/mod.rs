@@ -1,6 +1,7 @@
 //! What the algorithms need to know of a triangle mesh: adjacency, pieces, areas, welding.
 
 pub mod ball;
+pub mod doctor;
 pub mod dual;
 pub mod face;
 mod groups;

@@ -2,6 +2,7 @@
 
 use super::board::Board;
 use super::camera::{Ball, Camera, Window};
+use super::closer;
 use super::colormap::ColourMap;
 use super::colour::srgb_to_linear;
 use super::frame::{Frame, Theme, light_map};
@@ -369,6 +370,18 @@ impl Stage {
         let centre = self.whole().centre();
         self.camera.frame(&self.window, self.motion.sample(reference).into_iter(), centre);
         self.redraw();
+    }
+
+    /// Moves the camera to where most of these faces are seen: see [`closer::look_at`]. Nothing happens where there is
+    /// none of them.
+    pub fn frame_faces(&mut self, faces: &[u32]) {
+        self.positions(self.moment());
+        let scene = self.whole().ball();
+        let (all, positions) = (self.motion.faces(), &self.positions);
+        if let Some(camera) = closer::look_at(&self.camera, &self.window, scene, faces, all, positions) {
+            self.camera = camera;
+            self.redraw();
+        }
     }
 
     /// The camera as six numbers that do not depend on where the figure stands and how large it is: where the camera

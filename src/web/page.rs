@@ -327,6 +327,12 @@ impl Viewport {
         self.framed = true;
     }
 
+    /// Turns and comes nearer so that as many of these faces as can be are seen, with room around them.
+    pub fn frame_faces(&mut self, faces: &[u32]) {
+        self.stage.frame_faces(faces);
+        self.framed = true;
+    }
+
     /// The camera as six numbers that show any figure in the same way, whatever its size and place.
     pub fn camera(&self) -> Float32Array {
         Float32Array::from(&self.stage.camera_numbers()[..])

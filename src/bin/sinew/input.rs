@@ -2,7 +2,7 @@
 
 use crate::Refusal;
 use clap::{Args, ValueEnum};
-use sinew::import::{File, Imported, Options, Reference, Sampling, natural_order, open_in_order};
+use sinew::import::{File, Imported, Options, Reference, Sampling, may_be_needed, natural_order, open_in_order};
 use sinew::warning::Warning;
 use std::io::Write;
 use std::path::{Path, PathBuf};
@@ -10,7 +10,8 @@ use std::path::{Path, PathBuf};
 /// Files, and how to read them.
 #[derive(Args)]
 pub struct Input {
-    /// One glTF or GLB; or OBJ, OFF or PLY files, the first the reference pose, the others its poses
+    /// One glTF or GLB; or OBJ, OFF, PLY or STL files, the first the reference pose, the others its poses; or a folder
+    /// or zip archive of these
     #[arg(required = true)]
     input: Vec<PathBuf>,
     /// The clip of a glTF, by name or by number from 0 (default: the first that moves the mesh)
@@ -43,8 +44,13 @@ enum ReferenceArgument {
 impl Input {
     /// Reads the files.
     pub fn open(&self) -> Result<Imported, Refusal> {
-        let mut files = self.input.iter().map(|path| read(path)).collect::<Result<Vec<_>, _>>()?;
-        if let Some((_, poses)) = files.split_first_mut() {
+        let mut files = Vec::new();
+        for path in &self.input {
+            if path.is_dir() { read_folder(path, &mut files)? } else { files.push(read(path)?) }
+        }
+        if self.input.first().is_some_and(|path| path.is_dir()) {
+            natural_order(&mut files);
+        } else if let Some((_, poses)) = files.split_first_mut() {
             natural_order(poses);
         }
         if let [document] = self.input.as_slice()
@@ -80,6 +86,21 @@ fn read(path: &Path) -> Result<File, Refusal> {
         Ok(bytes) => Ok(File { name, bytes }),
         Err(error) => Err(Refusal(format!("{name} cannot be read: {error}"))),
     }
+}
+
+/// Everything in a folder that a mesh may need, folders in it included.
+fn read_folder(folder: &Path, files: &mut Vec<File>) -> Result<(), Refusal> {
+    let wrong = |error: std::io::Error| Refusal(format!("{} cannot be read: {error}", folder.display()));
+    for entry in std::fs::read_dir(folder).map_err(wrong)? {
+        let entry = entry.map_err(wrong)?;
+        // A link to a folder is not followed: it may lead back here.
+        if entry.file_type().map_err(wrong)?.is_dir() {
+            read_folder(&entry.path(), files)?;
+        } else if may_be_needed(&entry.path().display().to_string()) {
+            files.push(read(&entry.path())?);
+        }
+    }
+    Ok(())
 }
 
 /// The buffers that a glTF names, as far as they are there: a missing one is the importer's to explain.

@@ -5,6 +5,7 @@
 
 use super::buffers::Buffers;
 use super::document::Document;
+use super::draco::Attribute;
 use crate::import::ImportError;
 use gltf::json::accessor::{ComponentType, Type};
 use gltf::json::validation::Checked;
@@ -33,20 +34,36 @@ struct Sparse<'a> {
 impl<'a> Accessor<'a> {
     /// Finds accessor `index` and checks its sizes; `purpose` says what it is for, in sentences.
     pub fn open(document: &Document, buffers: &'a Buffers, index: usize, purpose: &str) -> Result<Self, ImportError> {
+        Self::over(document, buffers, index, purpose, None)
+    }
+
+    /// The same for an accessor whose values were decoded apart from it: they stand in for its own, with their own
+    /// number and type of component.
+    pub fn over(
+        document: &Document,
+        buffers: &'a Buffers,
+        index: usize,
+        purpose: &str,
+        decoded: Option<&'a Attribute>,
+    ) -> Result<Self, ImportError> {
         let label = format!("accessor {index} of {} ({purpose})", document.name);
         let wrong = |what: &str| ImportError(format!("{label} {what}; the file is damaged, export it again"));
         let entry = document.accessors.get(index).ok_or_else(|| wrong("does not exist"))?;
         let Checked::Valid(component) = entry.component_type else { return Err(wrong("has an unknown componentType")) };
         let Checked::Valid(shape) = entry.type_ else { return Err(wrong("has an unknown type")) };
-        let component = component.0;
+        let component = decoded.map_or(component.0, |values| values.component);
+        if decoded.is_some_and(|values| values.width != shape.multiplicity()) {
+            return Err(wrong(&format!("was compressed as something else than {shape:?}")));
+        }
         let size = component.size() * shape.multiplicity();
         // Vertex and face numbers are 32 bits wide throughout.
         let count = u32::try_from(entry.count.0).map_err(|_| wrong("claims more elements than can be numbered"))?;
-        let count = count as usize;
+        let count = decoded.map_or(count as usize, |values| values.bytes.len() / size);
         let mut stride = size;
-        let dense = match entry.buffer_view {
-            None => None,
-            Some(view) => {
+        let dense = match (decoded, entry.buffer_view) {
+            (Some(values), _) => Some(values.bytes.as_slice()),
+            (None, None) => None,
+            (None, Some(view)) => {
                 let bytes = buffers.view(document, view.value())?;
                 let given = document.views.get(view.value()).and_then(|v| v.byte_stride).map_or(0, |s| s.0);
                 if given != 0 {

@@ -1,31 +1,77 @@
 //! Where a document's bytes are: the GLB's binary chunk, `data:` addresses, files given beside it.
 
 use super::document::Document;
+use super::meshopt::Compressed;
+use crate::import::limits::Budget;
 use crate::import::{File, ImportError};
 use std::borrow::Cow;
+use std::cell::OnceCell;
 
 /// The buffers of a document, each found or with the reason why not: a buffer that nothing needs may be missing.
 pub struct Buffers<'a> {
     sources: Vec<Result<Cow<'a, [u8]>, ImportError>>,
+    /// For each buffer view that is stored compressed its bytes, once they were asked for.
+    decoded: Vec<OnceCell<Result<Vec<u8>, ImportError>>>,
 }
 
 impl<'a> Buffers<'a> {
-    /// Finds the buffers of `document`, which was read from the file called `name`, among `files`.
-    pub fn find(name: &str, document: &Document, binary: Option<&'a [u8]>, files: &'a [File]) -> Self {
+    /// Finds the buffers of `document`, which was read from the file called `name`, among `files`. What compressed
+    /// buffer views claim is taken from the budget; they are decoded when they are asked for.
+    pub fn find(
+        name: &str,
+        document: &Document,
+        binary: Option<&'a [u8]>,
+        files: &'a [File],
+        budget: &mut Budget,
+    ) -> Result<Self, ImportError> {
+        for (view, compressed) in &document.extensions.meshopt {
+            budget.take(compressed.decoded_length(), 1, &format!("compressed buffer view {view}"))?;
+        }
         let find = |(index, buffer): (usize, &gltf::json::Buffer)| match (&buffer.uri, binary) {
             (Some(uri), _) => locate(name, uri, files),
             (None, Some(chunk)) if index == 0 => Ok(Cow::Borrowed(chunk)),
             _ => Err(ImportError(format!("buffer {index} of {name} has no data; export it as one GLB"))),
         };
-        Self { sources: document.buffers.iter().enumerate().map(find).collect() }
+        Ok(Self {
+            sources: document.buffers.iter().enumerate().map(find).collect(),
+            decoded: vec![OnceCell::new(); document.views.len()],
+        })
     }
 
-    /// The bytes of a buffer view. This is where data that a view keeps compressed would be decoded.
+    /// The bytes of a buffer view, decoded where it is stored compressed.
     pub fn view(&self, document: &Document, view: usize) -> Result<&[u8], ImportError> {
         let name = &document.name;
         let missing = || ImportError(format!("{name} names buffer view {view}, which does not exist; export it again"));
         let entry = document.views.get(view).ok_or_else(missing)?;
-        let buffer = entry.buffer.value();
+        let cell = self.decoded.get(view).ok_or_else(missing)?;
+        match document.extensions.meshopt.get(&view) {
+            None => {
+                let start = entry.byte_offset.map_or(0, |o| o.0);
+                self.stored(name, view, (entry.buffer.value(), start, entry.byte_length.0))
+            }
+            Some(compressed) => {
+                let decoded = cell.get_or_init(|| self.decode(name, view, compressed));
+                decoded.as_deref().map_err(ImportError::clone)
+            }
+        }
+    }
+
+    fn decode(&self, name: &str, view: usize, compressed: &Compressed) -> Result<Vec<u8>, ImportError> {
+        let place = (compressed.buffer, compressed.byte_offset, compressed.byte_length);
+        let data = self.stored(name, view, place)?;
+        let wrong = |what| {
+            ImportError(format!("the compressed data of buffer view {view} of {name} {what}; export the file again"))
+        };
+        compressed.decode(data).map_err(wrong)
+    }
+
+    /// Bytes of a buffer, as they are in the file; `start` and `length` are what buffer view `view` claims.
+    fn stored(
+        &self,
+        name: &str,
+        view: usize,
+        (buffer, start, length): (usize, u64, u64),
+    ) -> Result<&[u8], ImportError> {
         let source = match self.sources.get(buffer) {
             Some(Ok(bytes)) => bytes,
             Some(Err(why)) => return Err(why.clone()),
@@ -35,8 +81,7 @@ impl<'a> Buffers<'a> {
                 )));
             }
         };
-        let start = entry.byte_offset.map_or(0, |o| o.0);
-        let end = start.saturating_add(entry.byte_length.0);
+        let end = start.saturating_add(length);
         let range = usize::try_from(start).ok().zip(usize::try_from(end).ok());
         range.and_then(|(start, end)| source.get(start..end)).ok_or_else(|| {
             ImportError(format!(

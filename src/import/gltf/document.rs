@@ -4,6 +4,7 @@
 //! read, so that an odd material or texture does not keep anyone from their mesh. The entries are the types of
 //! the `gltf` crate; nothing in them is checked yet: every index may be out of range.
 
+use super::extensions::{self, Extensions};
 use crate::import::ImportError;
 use crate::warning::Warning;
 use gltf::json::{self, Accessor, Animation, Buffer, Mesh, Node, Scene, Skin, buffer};
@@ -21,6 +22,8 @@ pub struct Document {
     pub animations: Vec<Animation>,
     /// Buffers.
     pub buffers: Vec<Buffer>,
+    /// Extensions that concern the shape.
+    pub extensions: Extensions,
     /// Meshes.
     pub meshes: Vec<Mesh>,
     /// Nodes.
@@ -35,32 +38,6 @@ pub struct Document {
     pub views: Vec<buffer::View>,
 }
 
-/// Required extensions that change the shape, with what helps against them.
-const NOT_YET: &[(&str, &str)] = &[
-    ("KHR_draco_mesh_compression", "export it without Draco compression"),
-    ("EXT_meshopt_compression", "export it without meshopt compression"),
-    ("KHR_meshopt_compression", "export it without meshopt compression"),
-    ("EXT_mesh_gpu_instancing", "export it with its instances as nodes"),
-];
-
-/// Beginnings of the names of extensions that leave the shape alone, or that are handled.
-const HARMLESS: &[&str] = &[
-    "KHR_mesh_quantization",
-    "KHR_materials_",
-    "KHR_texture_",
-    "KHR_lights_",
-    "KHR_xmp",
-    "EXT_texture_",
-    "EXT_lights_",
-    "EXT_mesh_features",
-    "EXT_structural_metadata",
-    "EXT_instance_features",
-    "MSFT_texture_",
-    "MSFT_packing_",
-    "ADOBE_materials_",
-    "VRM",
-];
-
 impl Document {
     /// Reads the document of the file called `name`.
     pub fn read(name: &str, text: &[u8], warnings: &mut Vec<Warning>) -> Result<Self, ImportError> {
@@ -71,7 +48,7 @@ impl Document {
             return Err(ImportError(format!("{name} is not a glTF document: its JSON is not an object")));
         };
         check_version(name, &root)?;
-        check_extensions(name, &root, warnings)?;
+        extensions::note_required(&root, warnings);
         let scene = match root.get("scene") {
             None | Some(Value::Null) => None,
             Some(number) => Some(number.as_u64().and_then(|n| usize::try_from(n).ok()).ok_or_else(|| {
@@ -79,14 +56,17 @@ impl Document {
             })?),
         };
         let mut animations = take(&mut root, "animations", name)?;
-        let aimless: usize = animations.iter_mut().map(drop_aimless_channels).sum();
+        let aimless: usize = animations.iter_mut().map(extensions::resolve_pointers).sum();
         if aimless > 0 {
             warnings.push(Warning::new(
                 "channels-left-out",
                 format!("{aimless} animation channels target no node and were left out."),
             ));
         }
+        let views = take(&mut root, "bufferViews", name)?;
+        let nodes = take(&mut root, "nodes", name)?;
         let mut meshes = take(&mut root, "meshes", name)?;
+        let extensions = Extensions::find(&views, &meshes, &nodes, name)?;
         meshes.iter_mut().for_each(drop_materials);
         let mut scenes = take(&mut root, "scenes", name)?;
         scenes.iter_mut().filter_map(Value::as_object_mut).for_each(|scene| {
@@ -97,12 +77,13 @@ impl Document {
             accessors: read_all(take(&mut root, "accessors", name)?, "accessor", name)?,
             animations: read_all(animations, "animation", name)?,
             buffers: read_all(take(&mut root, "buffers", name)?, "buffer", name)?,
+            extensions,
             meshes: read_all(meshes, "mesh", name)?,
-            nodes: read_all(take(&mut root, "nodes", name)?, "node", name)?,
+            nodes: read_all(nodes, "node", name)?,
             scene,
             scenes: read_all(scenes, "scene", name)?,
             skins: read_all(take(&mut root, "skins", name)?, "skin", name)?,
-            views: read_all(take(&mut root, "bufferViews", name)?, "buffer view", name)?,
+            views: read_all(views, "buffer view", name)?,
         })
     }
 
@@ -134,32 +115,6 @@ fn check_version(name: &str, root: &Map<String, Value>) -> Result<(), ImportErro
     }
 }
 
-fn check_extensions(name: &str, root: &Map<String, Value>, warnings: &mut Vec<Warning>) -> Result<(), ImportError> {
-    let names = |key: &str| -> Vec<&str> {
-        root.get(key).and_then(Value::as_array).into_iter().flatten().filter_map(Value::as_str).collect()
-    };
-    let required = names("extensionsRequired");
-    for extension in &required {
-        if let Some((_, help)) = NOT_YET.iter().find(|(known, _)| known == extension) {
-            return Err(ImportError(format!("{name} needs {extension}, which is not read yet; {help}")));
-        }
-        if !HARMLESS.iter().any(|known| extension.starts_with(known)) {
-            warnings.push(Warning::new(
-                "unknown-extension",
-                format!("The file requires {extension}, which is not known here; what it adds was left out."),
-            ));
-        }
-    }
-    let instancing = "EXT_mesh_gpu_instancing";
-    if names("extensionsUsed").contains(&instancing) {
-        warnings.push(Warning::new(
-            "instances-left-out",
-            format!("The file repeats meshes by {instancing}; one of each is shown."),
-        ));
-    }
-    Ok(())
-}
-
 /// Takes an array out of the document; absent is empty.
 fn take(root: &mut Map<String, Value>, key: &str, name: &str) -> Result<Vec<Value>, ImportError> {
     match root.remove(key) {
@@ -186,15 +141,6 @@ fn read_all<T: DeserializeOwned>(entries: Vec<Value>, kind: &str, name: &str) ->
         })
     };
     entries.into_iter().enumerate().map(read).collect()
-}
-
-/// Removes channels without a node (such as those of KHR_animation_pointer), which the `gltf` crate cannot
-/// represent. Returns how many there were.
-fn drop_aimless_channels(animation: &mut Value) -> usize {
-    let Some(channels) = animation.get_mut("channels").and_then(Value::as_array_mut) else { return 0 };
-    let before = channels.len();
-    channels.retain(|channel| channel.get("target").is_none_or(|target| target.get("node").is_some()));
-    before - channels.len()
 }
 
 /// Removes what a primitive says of its look.

@@ -4,6 +4,7 @@ use super::buffers::Buffers;
 use super::clip::Motion;
 use super::container;
 use super::document::Document;
+use super::instancing;
 use super::nodes::{Local, Nodes};
 use super::shape::{self, Shape};
 use super::skin::{self, Skin};
@@ -36,16 +37,20 @@ struct Instance {
     node: usize,
     shape: usize,
     skin: Option<usize>,
+    /// Where it is in the node's frame.
+    place: DAffine3,
 }
 
 impl Model {
     /// Reads the glTF or GLB `file`; its buffers are looked for among `files`.
     pub fn read(file: &File, files: &[File], warnings: &mut Vec<Warning>) -> Result<Self, ImportError> {
         let container = container::split(&file.name, &file.bytes)?;
+        let mut budget = Budget::new(&file.name);
+        budget.take(entries(container.json), ENTRY, "the document")?;
         let document = Document::read(&file.name, container.json, warnings)?;
-        let buffers = Buffers::find(&file.name, &document, container.binary, files);
+        let buffers = Buffers::find(&file.name, &document, container.binary, files, &mut budget)?;
         let nodes = Nodes::read(&document, warnings)?;
-        let mut reader = Reader { document: &document, buffers: &buffers, budget: Budget::new(&file.name), warnings };
+        let mut reader = Reader { document: &document, buffers: &buffers, budget, warnings };
         let skins = (0..document.skins.len()).map(|s| Skin::read(&document, &buffers, s)).collect::<Result<_, _>>();
         let skins: Vec<Skin> = if shows_skin(&document, &nodes) { skins? } else { Vec::new() };
         let targets = (0..document.nodes.len()).map(|n| reader.target_count(n)).collect::<Result<Vec<_>, _>>()?;
@@ -121,7 +126,7 @@ impl Model {
             let shape = &self.shapes[instance.shape];
             let map = match (instance.skin, &shape.influences) {
                 (Some(skin), Some(_)) => bind.skins[skin],
-                _ => bind.worlds[instance.node],
+                _ => bind.worlds[instance.node] * instance.place,
             };
             out.extend(shape.morphed(&self.weights[instance.node]).iter().map(|p| map.transform_point3(*p)));
         }
@@ -154,7 +159,7 @@ impl Model {
             match (instance.skin, &shape.influences) {
                 (Some(skin), Some(influences)) => out.extend(influences.blend(&positions, &skins[skin])),
                 _ => {
-                    let world = worlds[instance.node];
+                    let world = worlds[instance.node] * instance.place;
                     out.extend(positions.iter().map(|p| world.transform_point3(*p)));
                 }
             }
@@ -261,6 +266,11 @@ impl Reader<'_, '_> {
                 Some(skin) => Some(skins[skin].joints.len()),
                 None => None,
             };
+            // A skinned mesh is where its joints are; copies of it would all be in one place.
+            let places = match skin {
+                Some(_) => vec![DAffine3::IDENTITY],
+                None => instancing::places(self.document, self.buffers, node, &mut self.budget)?,
+            };
             let primitives = self.document.meshes.get(mesh).map_or(0, |m| m.primitives.len());
             for number in 0..primitives {
                 let shape = match known.entry((mesh, number, joints)) {
@@ -274,11 +284,21 @@ impl Reader<'_, '_> {
                         *entry.insert((shapes.len() > first_free).then_some(first_free))
                     }
                 };
-                instances.extend(shape.map(|shape| Instance { node, shape, skin }));
+                if let Some(shape) = shape {
+                    instances.extend(places.iter().map(|&place| Instance { node, shape, skin, place }));
+                }
             }
         }
         Ok((shapes, instances))
     }
+}
+
+/// The most bytes that a document takes for each of its [`entries`], once it is read: `{}` for a node is the worst.
+const ENTRY: u64 = 256;
+
+/// How many values a document has, at the most, counted without reading it.
+fn entries(json: &[u8]) -> u64 {
+    json.iter().filter(|byte| matches!(byte, b'{' | b'[' | b',' | b':')).count() as u64
 }
 
 /// True if a node that the scene shows has a skin: a broken skin that nothing uses does no harm.

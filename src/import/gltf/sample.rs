@@ -2,16 +2,13 @@
 
 use super::clip::Motion;
 use super::model::Model;
-use crate::import::{File, ImportError, Imported, Options, Reference, Sampling, counted};
-use crate::mesh::weld::{compact, weld};
+use crate::import::seams::{drop_collapsed, extent, weld_seams};
+use crate::import::{File, ImportError, Imported, Options, Reference, Sampling, last_part};
 use crate::sequence::{Pose, Sequence, SequenceError};
 use crate::warning::Warning;
 use glam::DVec3;
 use std::collections::BTreeMap;
 
-/// Vertices that differ by less than this share of the diagonal are welded: well above the rounding of 32-bit
-/// floats, well below anything modelled.
-const WELD_TOLERANCE: f64 = 1e-6;
 /// A clip moves the mesh if a vertex moves by more than this share of the diagonal.
 const MOVES: f64 = 1e-6;
 /// Times at which a clip is looked at to see whether it moves the mesh.
@@ -53,7 +50,7 @@ pub fn open(file: &File, files: &[File], options: &Options) -> Result<Imported, 
     let name = model.name().to_owned();
     drop(model);
     if options.weld {
-        weld_seams(&mut faces, &mut reference, &mut poses, &mut warnings);
+        weld_seams(&mut faces, &mut reference, &mut poses, Some(&mut warnings));
     }
     let input_faces = faces.len();
     let stay = drop_collapsed(&mut faces, &mut warnings);
@@ -63,7 +60,7 @@ pub fn open(file: &File, files: &[File], options: &Options) -> Result<Imported, 
         )));
     }
     let wrong = |error: SequenceError| ImportError(format!("{name}: {error}; the file is damaged, export it again"));
-    let mut sequence = Sequence::new(short_name(&name), faces, reference, poses).map_err(wrong)?;
+    let mut sequence = Sequence::new(last_part(&name), faces, reference, poses).map_err(wrong)?;
     if let Some(stay) = stay {
         sequence = sequence.with_polygons(stay).map_err(wrong)?;
     }
@@ -88,11 +85,6 @@ fn at_most_a_few(warnings: Vec<Warning>) -> Vec<Warning> {
         }
     }
     kept
-}
-
-/// The last part of a path.
-fn short_name(path: &str) -> &str {
-    path.rsplit(['/', '\\']).next().unwrap_or(path)
 }
 
 fn choose_clip(model: &Model, options: &Options, warnings: &mut Vec<Warning>) -> Result<Option<usize>, ImportError> {
@@ -170,49 +162,4 @@ fn sample_times(motion: &Motion, movers: &[bool], sampling: Sampling) -> Result<
             Ok(times)
         }
     }
-}
-
-fn weld_seams(faces: &mut [[u32; 3]], reference: &mut Vec<DVec3>, poses: &mut [Pose], warnings: &mut Vec<Warning>) {
-    let stands = {
-        let mut all: Vec<&[DVec3]> = vec![reference];
-        all.extend(poses.iter().map(|pose| pose.positions.as_slice()));
-        weld(&all, WELD_TOLERANCE * extent(reference))
-    };
-    let (kept, numbers) = compact(&stands);
-    let gone = reference.len() - kept.len();
-    if gone == 0 {
-        return;
-    }
-    let keep = |positions: &[DVec3]| -> Vec<DVec3> { kept.iter().map(|&v| positions[v as usize]).collect() };
-    *reference = keep(reference);
-    poses.iter_mut().for_each(|pose| pose.positions = keep(&pose.positions));
-    faces.iter_mut().flatten().for_each(|v| *v = numbers[*v as usize]);
-    warnings.push(Warning::new(
-        "welded",
-        format!(
-            "{} joined to another that is in the same place in every pose (seams of texture and normals).",
-            counted(gone, "vertex was", "vertices were")
-        ),
-    ));
-}
-
-/// Removes faces of which two corners are one vertex. Returns the old numbers of those that stay, if any had to go.
-fn drop_collapsed(faces: &mut Vec<[u32; 3]>, warnings: &mut Vec<Warning>) -> Option<Vec<u32>> {
-    let whole = |&[a, b, c]: &[u32; 3]| a != b && b != c && c != a;
-    let stay: Vec<u32> = (0..faces.len() as u32).filter(|&f| whole(&faces[f as usize])).collect();
-    let gone = faces.len() - stay.len();
-    if gone == 0 {
-        return None;
-    }
-    faces.retain(whole);
-    let message = format!("{} left out because two corners are one point.", counted(gone, "face was", "faces were"));
-    warnings.push(Warning::new("collapsed-faces", message));
-    Some(stay)
-}
-
-/// The diagonal of the bounding box.
-fn extent(positions: &[DVec3]) -> f64 {
-    let low = positions.iter().copied().fold(DVec3::INFINITY, DVec3::min);
-    let high = positions.iter().copied().fold(DVec3::NEG_INFINITY, DVec3::max);
-    if low.x > high.x { 0.0 } else { low.distance(high) }
 }

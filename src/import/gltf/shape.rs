@@ -5,6 +5,7 @@
 use super::accessor::Accessor;
 use super::buffers::Buffers;
 use super::document::Document;
+use super::draco::{self, Unpacked};
 use crate::import::ImportError;
 use crate::import::limits::Budget;
 use crate::warning::Warning;
@@ -55,7 +56,9 @@ pub fn read(
 ) -> Result<Option<Shape>, ImportError> {
     let whose = document.mesh_name(mesh);
     let Some(primitive) = document.meshes.get(mesh).and_then(|m| m.primitives.get(number)) else { return Ok(None) };
-    let mut reader = Reader { document, buffers, primitive, whose: &whose, budget };
+    let unpacked = unpack(document, buffers, (mesh, number), joints.is_some(), budget)?;
+    let unpacked = unpacked.as_ref();
+    let mut reader = Reader { document, buffers, primitive, unpacked, whose: &whose, budget };
     let why = match primitive.mode {
         Checked::Invalid => "is of an unknown kind",
         Checked::Valid(Mode::Points | Mode::Lines | Mode::LineLoop | Mode::LineStrip) => "is made of points or lines",
@@ -72,11 +75,32 @@ pub fn read(
     Ok(None)
 }
 
+/// Decodes a primitive that is stored compressed: its faces and what places its vertices.
+fn unpack(
+    document: &Document,
+    buffers: &Buffers,
+    (mesh, number): (usize, usize),
+    skinned: bool,
+    budget: &Budget,
+) -> Result<Option<Unpacked>, ImportError> {
+    let Some(entry) = document.extensions.draco.get(&(mesh, number)) else { return Ok(None) };
+    let wanted =
+        |name: &&str| *name == "POSITION" || skinned && (name.starts_with("JOINTS_") || name.starts_with("WEIGHTS_"));
+    let wanted: Vec<&str> = entry.attributes.keys().map(String::as_str).filter(wanted).collect();
+    let data = buffers.view(document, entry.buffer_view)?;
+    draco::unpack(data, entry, &wanted, budget).map(Some).map_err(|what| {
+        let whose = document.mesh_name(mesh);
+        ImportError(format!("the Draco data of {whose} of {} {what}; export the file again", document.name))
+    })
+}
+
 /// A primitive and where its data are.
 struct Reader<'a> {
     document: &'a Document,
     buffers: &'a Buffers<'a>,
     primitive: &'a Primitive,
+    /// What was decoded of it, if it is stored compressed.
+    unpacked: Option<&'a Unpacked>,
     /// Its mesh, for sentences.
     whose: &'a str,
     budget: &'a mut Budget,
@@ -85,8 +109,15 @@ struct Reader<'a> {
 impl<'a> Reader<'a> {
     fn shape(&mut self, mode: Mode, positions: &Accessor, joints: Option<usize>) -> Result<Option<Shape>, ImportError> {
         positions.expect_shape(Type::Vec3)?;
-        let corners = self.corners(positions.len())?;
-        let (used, faces) = compact(triangles(mode, &corners), positions.len());
+        let listed = match self.unpacked {
+            Some(unpacked) => {
+                positions.expect_len(unpacked.vertices, "its compressed mesh")?;
+                self.budget.take(unpacked.faces.len() as u64, 12, self.whose)?;
+                unpacked.faces.clone()
+            }
+            None => triangles(mode, &self.corners(positions.len())?),
+        };
+        let (used, faces) = compact(listed, positions.len());
         if faces.is_empty() {
             return Ok(None);
         }
@@ -104,11 +135,11 @@ impl<'a> Reader<'a> {
     }
 
     fn attribute(&self, semantic: Semantic) -> Result<Option<Accessor<'a>>, ImportError> {
-        let purpose = format!("{} of {}", semantic.to_string(), self.whose);
-        match self.primitive.attributes.get(&Checked::Valid(semantic)) {
-            Some(index) => Accessor::open(self.document, self.buffers, index.value(), &purpose).map(Some),
-            None => Ok(None),
-        }
+        let name = semantic.to_string();
+        let purpose = format!("{name} of {}", self.whose);
+        let Some(index) = self.primitive.attributes.get(&Checked::Valid(semantic)) else { return Ok(None) };
+        let decoded = self.unpacked.and_then(|unpacked| unpacked.attributes.get(&name));
+        Accessor::over(self.document, self.buffers, index.value(), &purpose, decoded).map(Some)
     }
 
     /// The vertex numbers of the primitive in the order in which it names them.
