@@ -210,7 +210,7 @@ window.sinew = {
     moves: app.transfer.motion && { method: app.transfer.method, pairs: app.transfer.motion.pairs, handles: app.transfer.motion.handles, seconds: app.transfer.motion.took },
     undo: app.history.past.length,
     redo: app.history.future.length,
-    drawn: stage.drawn && (app.second?.drawn ?? true),
+    drawn: stage.drawn && (!app.second || app.second.host.hidden || app.second.drawn),
     plain: stage.pace.plain,
     frame: Math.round(stage.pace.took),
   }),
