@@ -2,7 +2,8 @@
  * The state of the page and what can be done to it. Everything that shows something listens to the events named
  * after what changed: `source`, `result`, `parameters`, `step`, `view`, `busy`, `notice`, `panel`, `link`, `doc`
  * (what can be undone), `painted` (the figures), `place` (in a stage), `points` (what follows from the key points), `target`,
- * `motion` (of the target), `selected`.
+ * `motion` (of the target), `selected`. Of the stages: `pose` (another one is shown),
+ * `released` (the source moves by its poses again), `run-stage` (let the positions go by), `lessons`, `tour`.
  *
  * What can be undone is one small immutable object, {@link Doc}; all else follows from it or is only looked at.
  */
@@ -83,6 +84,8 @@ export class App extends EventTarget {
     this.work = new Work({ changed: () => this.changed('busy'), say: (text) => this.say(text) });
     /** How a project is opened, and the tours; both come with the page. @type {((project: object) => Promise<void>)|null} */
     this.openProject = null;
+    /** Stops the video that is being recorded. @type {AbortController|null} */
+    this.recording = null;
     /** @type {import('./timeline.js').Timeline|null} */
     this.timeline = null;
     /** @type {import('./tour.js').Guide|null} */
@@ -452,7 +455,8 @@ export class App extends EventTarget {
   // Work and words.
 
   cancel() {
-    this.engine.cancel();
+    if (this.recording) this.recording.abort();
+    else this.engine.cancel();
   }
 
   /** Stops a segmentation that runs if a newer question would have to wait for it. */
