@@ -11,6 +11,7 @@ pub mod biharmonic;
 mod error;
 pub mod joints;
 pub mod kd_tree;
+pub mod mend;
 mod parameters;
 mod prepared;
 pub mod propose;
