@@ -117,8 +117,8 @@ impl<'a> Problem<'a> {
             largest: 0.0,
             marks: vec![false; n],
             no_force: match members.len() {
-                ..=SMALL => FORCE_IF_SMALL,
-                ..=LARGE => FORCE,
+                n if n <= SMALL => FORCE_IF_SMALL,
+                n if n <= LARGE => FORCE,
                 _ => FORCE_IF_LARGE,
             },
         }
