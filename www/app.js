@@ -6,6 +6,7 @@
  * What can be undone is one small immutable object, {@link Doc}; all else follows from it or is only looked at.
  */
 import { collect, fetchSource } from './files.js';
+import { plural } from './format.js';
 import { History } from './history.js';
 import { KeyPoints, MOST_POINTS } from './keypoints.js';
 import { PARTS_VIEW, stepNamed } from './steps/index.js';
@@ -172,8 +173,11 @@ export class App extends EventTarget {
 
   /** @param {{name: string, blob: Blob}[]} files */
   openFiles(files, options = {}) {
-    const source = { kind: 'files', files, options: { ...this.about.options, ...options } };
-    return this.#open('open', source, () => collect(files, source.options));
+    // Poses dropped after a mesh that stands still may be that mesh's: the engine tells.
+    const { source: before, sequence } = this;
+    const still = before?.files && !sequence.sizes.poses ? before.files : null;
+    const source = { kind: 'files', files, still, options: { ...this.about.options, ...options } };
+    return this.#open('open', source, () => collect(files, source.options, still));
   }
 
   openAddress(url, options = {}) {
@@ -186,9 +190,9 @@ export class App extends EventTarget {
 
   /** Reads the open files again with other options. */
   reopen(options) {
-    const { kind, files, url, options: before } = this.source;
-    const source = { kind, files, url, options: { ...before, ...options } };
-    return this.#open('open', source, () => collect(files, source.options));
+    const { kind, files, still, url, options: before } = this.source;
+    const source = { kind, files, still, url, options: { ...before, ...options } };
+    return this.#open('open', source, () => collect(files, source.options, still));
   }
 
   async #open(operation, source, payload) {
@@ -196,11 +200,12 @@ export class App extends EventTarget {
     this.opening++;
     const sequence = await this.work.run('source', operation === 'zoo' ? 'making the creature' : 'reading', async (progress) => {
       const message = await payload(progress);
-      const transfer = (message.files ?? []).map((file) => file.bytes.buffer);
+      const transfer = [...(message.files ?? []), ...(message.still ?? [])].map((file) => file.bytes.buffer);
       return this.engine.call(operation, message, { progress, transfer });
     });
     this.opening--;
     if (!sequence) return false;
+    if (!sequence.joined) source.still = null;
     this.engine.keep(sequence);
     this.work.drop('points', 'search', 'pairs', 'motion', 'export');
     Object.assign(this, { source, sequence, result: null, feature: 0, round: 0, notice: null, selected: -1 });
@@ -215,6 +220,7 @@ export class App extends EventTarget {
     this.keypoints.forget();
     this.transfer.forget();
     this.changed('source', 'result', 'parameters', 'notice', 'doc', 'link');
+    if (sequence.joined) this.say(`${plural(sequence.sizes.poses, 'pose')} of the mesh that was open.`, 'news');
     await this.segment();
     return true;
   }
