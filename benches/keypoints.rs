@@ -21,7 +21,7 @@ const POINTS: usize = 12;
 /// Ten poses of a horse, where the data is at hand, else of a made one.
 fn horse() -> Sequence {
     let made = || {
-        let recipe = Recipe { name: "horse".into(), faces: 16_843, poses: 10, exact: false };
+        let recipe = Recipe { name: "horse".into(), faces: 16_843, poses: 10, exact: false, ..Recipe::default() };
         zoo::make(&recipe).expect("a creature of that name").sequence
     };
     let whole = match npz::data("the public horse; a made one is measured instead") {

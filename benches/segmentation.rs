@@ -15,7 +15,7 @@ use sinew::sequence::Sequence;
 use sinew::zoo::{self, Recipe};
 
 fn creature(name: &str, faces: usize) -> Sequence {
-    let recipe = Recipe { name: name.into(), faces, poses: 24, exact: false };
+    let recipe = Recipe { name: name.into(), faces, poses: 24, exact: false, ..Recipe::default() };
     zoo::make(&recipe).expect("a creature of that name").sequence
 }
 

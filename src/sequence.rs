@@ -120,6 +120,11 @@ impl Sequence {
         Ok(self)
     }
 
+    /// The reference pose without the others.
+    pub fn reference_alone(&self) -> Self {
+        Self { poses: Vec::new(), ..self.clone() }
+    }
+
     /// What to call it: the file's or creature's name.
     pub fn name(&self) -> &str {
         &self.name

@@ -203,7 +203,13 @@ fn a_creature_goes_out_and_comes_back() {
         ["zoo", "horse", "--faces", "3000", "--poses", "6", "--exact", "--out", "horse.glb", "--labels", "true.txt"];
     let output = sinew(&folder, &arguments);
     assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
-    let recipe = sinew::zoo::Recipe { name: "horse".into(), faces: 3000, poses: 6, exact: true };
+    let recipe = sinew::zoo::Recipe {
+        name: "horse".into(),
+        faces: 3000,
+        poses: 6,
+        exact: true,
+        ..sinew::zoo::Recipe::default()
+    };
     let creature = sinew::zoo::make(&recipe).unwrap();
     let bytes = std::fs::read(folder.join("horse.glb")).unwrap();
     let file = sinew::import::File { name: "horse.glb".into(), bytes };
@@ -237,4 +243,35 @@ fn parts_are_written_as_glb() {
     assert_eq!((&report["vertices"], &report["faces"]), (&Value::from(7), &Value::from(5)));
     let output = sinew(&folder, &["segment", "rest.obj", "pose.2.obj", "--out", "no/such/folder.glb"]);
     assert_eq!(output.status.code(), Some(2));
+}
+
+#[test]
+fn transfer_by_faces_reads_lines_and_compares_methods() {
+    let folder = folder("faces");
+    let run = |arguments: &[&str]| {
+        let output = sinew(&folder, arguments);
+        assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+    };
+    strip(&folder);
+    std::fs::write(folder.join("pairs.cons"), "4\n0, 0\n2, 2\n3, 3\n6, 6\n").unwrap();
+    let common = ["transfer", "rest.obj", "pose.2.obj", "pose.10.obj", "--target", "rest.obj", "--pairs", "pairs.cons"];
+    for method in ["gradients", "posed"] {
+        let rest = ["--method", method, "--pin", "0", "--out-poses", method, "--report", "report.json", "--truth"];
+        run(&[&common[..], &rest, &["pose.2.obj", "pose.10.obj"]].concat());
+        let report = json(&std::fs::read(folder.join("report.json")).unwrap());
+        assert_eq!(report["parameters"]["method"], method);
+        assert!(report["fit"]["coverage"].as_f64().unwrap() > 0.99, "{report}");
+        let error = report["error"]["mean"].as_f64().unwrap();
+        assert!(error < if method == "gradients" { 1e-6 } else { 0.2 }, "{method}: {error}");
+        assert!(folder.join(method).join("pose_001.obj").is_file());
+    }
+    run(&[&common[..], &["--compare", "compare.json", "--truth", "pose.2.obj", "pose.10.obj"]].concat());
+    let report = json(&std::fs::read(folder.join("compare.json")).unwrap());
+    let names: Vec<&str> = report["methods"].as_array().unwrap().iter().filter_map(|m| m["method"].as_str()).collect();
+    assert_eq!(names, ["bones", "direct", "relative", "gradients", "posed"]);
+    assert_eq!(report["methods"][3]["within"].as_array().unwrap().len(), report["bounds"].as_array().unwrap().len());
+    std::fs::write(folder.join("pairs.cons"), "9\n0, 0\n").unwrap();
+    let output = sinew(&folder, &common);
+    assert_eq!(output.status.code(), Some(2));
+    assert!(String::from_utf8_lossy(&output.stderr).contains("its first line says 9"));
 }

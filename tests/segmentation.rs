@@ -18,7 +18,8 @@ use sinew::sequence::{Pose, Sequence};
 use sinew::zoo::{self, Creature, Recipe};
 
 fn creature(name: &str, faces: usize, exact: bool) -> Creature {
-    zoo::make(&Recipe { name: name.into(), faces, poses: 12, exact }).expect("a creature of that name")
+    zoo::make(&Recipe { name: name.into(), faces, poses: 12, exact, ..Recipe::default() })
+        .expect("a creature of that name")
 }
 
 fn by_default(sequence: &Sequence) -> Segmentation {
@@ -82,6 +83,11 @@ fn a_hinge_is_cut_at_the_hinge() {
     let sequence = Sequence::new("hinge", faces, points(&positions), poses.collect()).expect("a sequence");
     let result = by_default(&sequence);
     assert_eq!(result.parts.len(), 2);
+    let moved = |f: usize| result.labels[f] != result.steps.unsmoothed[f];
+    let band = |f: usize| result.steps.band[f] == 1;
+    let faces = 0..sequence.faces().len();
+    assert!(faces.clone().any(band) && !faces.clone().all(band), "the band is around the hinge");
+    assert!(faces.clone().all(|f| band(f) || !moved(f)), "only the band moves");
     for (face, &label) in sequence.faces().iter().zip(&result.labels) {
         let x: f64 = face.iter().map(|&v| positions[v as usize][0]).sum::<f64>() / 3.0;
         assert!(x.abs() < 0.1 || (label == result.labels[0]) == (x < 0.0), "a face at {x} is on the wrong side");

@@ -27,7 +27,9 @@ fn assert_optimal(weights: &Weights) {
 }
 
 fn horse(faces: usize) -> sinew::sequence::Sequence {
-    zoo::make(&Recipe { name: "horse".into(), faces, poses: 1, exact: false }).expect("a horse").sequence
+    zoo::make(&Recipe { name: "horse".into(), faces, poses: 1, exact: false, ..Recipe::default() })
+        .expect("a horse")
+        .sequence
 }
 
 fn solver(faces: &[[u32; 3]], positions: &[DVec3]) -> Biharmonic {

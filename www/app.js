@@ -1,16 +1,20 @@
 /**
  * The state of the page and what can be done to it. Everything that shows something listens to the events named
  * after what changed: `source`, `result`, `parameters`, `step`, `view`, `busy`, `notice`, `panel`, `link`, `doc`
- * (what can be undone), `points` (what follows from the key points), `target`, `motion` (of the target), `selected`.
+ * (what can be undone), `painted` (the figures), `place` (in a stage), `points` (what follows from the key points), `target`,
+ * `motion` (of the target), `selected`. Of the stages: `pose` (another one is shown),
+ * `released` (the source moves by its poses again), `run-stage` (let the positions go by), `lessons`, `tour`.
  *
  * What can be undone is one small immutable object, {@link Doc}; all else follows from it or is only looked at.
  */
-import { collect, fetchSource } from './files.js';
+import { collect, fetchSource, resting } from './files.js';
 import { plural } from './format.js';
 import { History } from './history.js';
 import { KeyPoints, MOST_POINTS } from './keypoints.js';
+import { readProject } from './project.js';
+import { placeIn, viewNow } from './stages.js';
 import { PARTS_VIEW, stepNamed } from './steps/index.js';
-import { KEY_POINT_VIEWS } from './steps/point-views.js';
+import { PAIR_VIEWS } from './steps/point-views.js';
 import { Target } from './target.js';
 import { Transfer } from './transfer.js';
 import { Work } from './work.js';
@@ -49,9 +53,12 @@ export class App extends EventTarget {
     this.step = 'parts';
     /** The view of each step that is looked at. */
     this.views = {};
-    /** Which feature and which round of clustering the stage views show. */
-    this.feature = 0;
-    this.round = 0;
+    /** Where in a stage one is, by its view: a feature, a merge, a round. */
+    this.places = {};
+    /** The face that is looked at closely; −1: one that the stage finds telling. */
+    this.face = -1;
+    /** A moment that a stage holds the source at, whatever the timeline says; null: none. */
+    this.frozen = null;
     /** @type {null|{kind: 'zoo', recipe: object}|{kind: 'files'|'src', files: {name: string, blob: Blob}[], options: object, url?: string}} */
     this.source = null;
     this.sequence = null;
@@ -62,6 +69,8 @@ export class App extends EventTarget {
     this.colours = new Uint8Array();
     this.notice = null;
     this.panel = true;
+    /** Whether the lessons beside the stages are unfolded. */
+    this.lessons = false;
     /** The key point that is selected, by its place in the list; −1: none. */
     this.selected = -1;
     /** The key point that is pointed at. */
@@ -74,6 +83,14 @@ export class App extends EventTarget {
     /** Counts segmentations. */
     this.runs = 0;
     this.work = new Work({ changed: () => this.changed('busy'), say: (text) => this.say(text) });
+    /** How a project is opened, and the tours; both come with the page. @type {((project: object) => Promise<void>)|null} */
+    this.openProject = null;
+    /** Stops the video that is being recorded. @type {AbortController|null} */
+    this.recording = null;
+    /** @type {import('./timeline.js').Timeline|null} */
+    this.timeline = null;
+    /** @type {import('./tour.js').Guide|null} */
+    this.guide = null;
     this.keypoints = new KeyPoints(this);
     this.target = new Target(this);
     this.transfer = new Transfer(this);
@@ -112,6 +129,11 @@ export class App extends EventTarget {
   get view() {
     const { id, view } = owner(this.step);
     return this.views[id] ?? view;
+  }
+
+  /** Where one is in the stage that is shown. */
+  get place() {
+    return placeIn(this, viewNow(this));
   }
 
   // What can be undone.
@@ -171,13 +193,21 @@ export class App extends EventTarget {
     return this.#open('zoo', source, async () => ({ recipe: source.recipe }));
   }
 
-  /** @param {{name: string, blob: Blob}[]} files */
-  openFiles(files, options = {}) {
+  /** @param {{name: string, blob: Blob}[]} files @param {object|null} options null: whatever the files are */
+  async openFiles(files, options = null) {
+    if (!options && (await this.tookProject(files))) return true;
     // Poses dropped after a mesh that stands still may be that mesh's: the engine tells.
     const { source: before, sequence } = this;
-    const still = before?.files && !sequence.sizes.poses ? before.files : null;
+    const still = !options && before?.files && !sequence.sizes.poses ? before.files : null;
     const source = { kind: 'files', files, still, options: { ...this.about.options, ...options } };
     return this.#open('open', source, () => collect(files, source.options, still));
+  }
+
+  /** Opens files as a project, if they are one. @returns {Promise<boolean>} whether they were */
+  async tookProject(files) {
+    const project = await readProject(files);
+    if (project) await this.openProject?.(project);
+    return Boolean(project && this.openProject);
   }
 
   openAddress(url, options = {}) {
@@ -190,9 +220,9 @@ export class App extends EventTarget {
 
   /** Reads the open files again with other options. */
   reopen(options) {
-    const { kind, files, still, url, options: before } = this.source;
-    const source = { kind, files, still, url, options: { ...before, ...options } };
-    return this.#open('open', source, () => collect(files, source.options, still));
+    const { kind, files, url, options: before } = this.source;
+    const source = { kind, files, url, options: { ...before, ...options } };
+    return this.#open('open', source, () => collect(files, source.options));
   }
 
   async #open(operation, source, payload) {
@@ -205,10 +235,12 @@ export class App extends EventTarget {
     });
     this.opening--;
     if (!sequence) return false;
-    if (!sequence.joined) source.still = null;
+    // From now on they are one drop, the mesh first.
+    if (sequence.joined) source.files = [...resting(source.still), ...source.files];
+    delete source.still;
     this.engine.keep(sequence);
     this.work.drop('points', 'search', 'pairs', 'motion', 'export');
-    Object.assign(this, { source, sequence, result: null, feature: 0, round: 0, notice: null, selected: -1 });
+    Object.assign(this, { source, sequence, result: null, places: {}, face: -1, frozen: null, notice: null, selected: -1 });
     // Numbered shapes have no time of their own; a walk made by code closes on itself.
     sequence.timed = sequence.times.some((time, i) => time !== sequence.times[0] && i > 0);
     sequence.loop = source.kind === 'zoo' || !sequence.timed;
@@ -244,8 +276,6 @@ export class App extends EventTarget {
     result.curve = costCurve(result);
     this.result = result;
     if (wanted != null && parameters.method === 'tree') await this.#fetchParts(wanted);
-    this.feature = Math.min(this.feature, Math.max(0, result.features.length - 1));
-    this.round = Math.max(0, result.rounds.length - 1);
     this.#paintParts();
     if (this.#looksAtParts) this.stage.flowFrom(Uint32Array.from(result.features, ({ face }) => face));
     this.changed('result', 'link');
@@ -291,6 +321,13 @@ export class App extends EventTarget {
     if (answer && this.result === result) Object.assign(result, pickParts(answer));
   }
 
+  /** The open sequence as a skin with a joint for each part: `{bytes, error, rms}`, over the diagonal. */
+  exportRigid() {
+    const { result } = this;
+    if (!result || this.opening) return undefined;
+    return this.work.run('export rigid', 'writing the file', () => this.engine.call('export_rigid', { labels: result.labels }));
+  }
+
   /** The open sequence in its coloured parts as the bytes of a GLB; undefined if that did not work. */
   exportParts() {
     const { result, colours } = this;
@@ -329,21 +366,28 @@ export class App extends EventTarget {
     this.paint();
   }
 
-  setFeature(index) {
-    this.feature = clamp(index, 0, this.result.features.length - 1);
-    this.changed('view');
+  /** Goes to a position in the stage that is shown. */
+  setPlace(index) {
+    this.places = { ...this.places, [this.view]: index };
+    this.changed('place', 'link');
     this.paint();
   }
 
-  setRound(index) {
-    this.round = clamp(index, 0, this.result.rounds.length - 1);
-    this.changed('view');
+  /** Chooses the face that is looked at closely. */
+  chooseFace(face) {
+    this.face = face;
+    this.changed('place', 'link');
     this.paint();
   }
 
   setPanel(open) {
     this.panel = open;
     this.changed('panel', 'link');
+  }
+
+  setLessons(open) {
+    this.lessons = open;
+    this.changed('lessons', 'link');
   }
 
   /** @param {number} index −1: none */
@@ -373,17 +417,35 @@ export class App extends EventTarget {
     this.changed('play');
   }
 
+  /** Moves the source by a skin of a stage's own, and holds it at a moment. */
+  hold(skin, time) {
+    if (this.stage.skin !== skin) this.stage.skin = skin;
+    this.frozen = time;
+    this.stage.time = time;
+  }
+
+  /** Lets the source move by its poses again. */
+  release() {
+    if (this.frozen === null) return;
+    this.frozen = null;
+    this.stage.skin = null;
+    this.changed('released');
+  }
+
   /** Paints both figures as the step and the view in force ask. */
   paint() {
     if (!this.sequence) return;
     this.stage.unmark();
     const view = viewOf(this.step, this.view);
-    if (stepNamed(this.step).pair && this.target.sequence && !stepNamed(this.step).points) KEY_POINT_VIEWS[0].paint(this);
-    else if (stepNamed(this.step).points || this.result) view.paint(this);
+    // A stage may move the source in its own way; any other lets it go.
+    if (!view.moves) this.release();
+    if (stepNamed(this.step).pair && this.target.sequence && !stepNamed(this.step).points) PAIR_VIEWS[0].paint(this);
+    else if (stepNamed(this.step).points || this.result) view.paint(this, placeIn(this, view));
     else {
       this.stage.boundaries = false;
       this.stage.paint(['paint_clay']);
     }
+    this.changed('painted');
   }
 
   get #looksAtParts() {
@@ -401,7 +463,8 @@ export class App extends EventTarget {
   // Work and words.
 
   cancel() {
-    this.engine.cancel();
+    if (this.recording) this.recording.abort();
+    else this.engine.cancel();
   }
 
   /** Stops a segmentation that runs if a newer question would have to wait for it. */
@@ -438,8 +501,8 @@ function without(object, name) {
   return rest;
 }
 
-const pickParts = ({ labels, unsmoothed, parts, rigid_residual, residual_before_smoothing }) =>
-  ({ labels, unsmoothed, parts, rigid_residual, residual_before_smoothing });
+const pickParts = ({ labels, unsmoothed, band, parts, rigid_residual, residual_before_smoothing }) =>
+  ({ labels, unsmoothed, band, parts, rigid_residual, residual_before_smoothing });
 
 /** What it costs to go from one more part to `parts`: the merge tree read from its finest end. */
 function costCurve({ merges, rounds }) {

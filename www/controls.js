@@ -9,8 +9,8 @@ const idOf = (...words) => `control-${words.join('-').toLowerCase().replace(/[^a
  * `change` hears the value when it is let go of, `input` while it moves.
  * @returns {{element: HTMLElement, set(value: number, text: string, changed: boolean): void}}
  */
-export function slider({ label, symbol = '', help, low, high, step, paper, reading, change, input, reset }) {
-  const id = idOf(label);
+export function slider({ id: own, label, symbol = '', help, low, high, step, paper, reading, change, input, reset }) {
+  const id = own ?? idOf(label);
   const value = h('output', { class: 'number', for: id });
   const range = h('input', { id, type: 'range', min: low, max: high, step, title: help, on: {
     input: () => {

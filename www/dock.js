@@ -1,11 +1,12 @@
 /**
  * What lies under the picture: the views of the step, and what belongs to the view that is shown — the slider for
- * the number of parts, a legend in numbers, or a stepper.
+ * the number of parts, a legend in numbers. Between them one goes through the positions of a stage: strip.js.
  */
 import { choice, slider } from './controls.js';
 import { h, iconButton, show } from './dom.js';
 import { number, plural } from './format.js';
 import { colourBar } from './plot.js';
+import { stageStrip } from './strip.js';
 import { stepNamed } from './steps/index.js';
 import { MOST_POINTS } from './keypoints.js';
 import { dot } from './steps/point-list.js';
@@ -16,14 +17,20 @@ const MOST_PARTS = 48;
 /** @param {HTMLElement} host @param {import('./app.js').App} app */
 export function dock(host, app) {
   const views = h('div', { class: 'views' });
+  const strip = stageStrip(app);
   const legend = h('div', { class: 'legend' });
   const partsControl = partsSlider(app);
   const pointsControl = pointsSlider(app);
-  show(host, views, legend);
+  show(host, h('div', { class: 'stage-row' }, strip.back, views, strip.on), strip.element, legend);
 
   let shown = '';
+  const choose = (id) => {
+    app.setView(id);
+    // Beside a lesson, its figure runs by itself.
+    if (app.lessons) app.changed('run-stage');
+  };
   const showViews = () => {
-    show(views, choice('View', stepNamed(app.step).views.map(({ id, label, title }) => [id, label, title]), app.view, (id) => app.setView(id), 'ribbon'));
+    show(views, choice('View', available(app).map(({ id, label, title }) => [id, label, title]), app.view, choose, 'ribbon'));
   };
   const reveal = () => views.querySelector(':checked')?.parentElement.scrollIntoView?.({ block: 'nearest', inline: 'center' });
   const update = () => {
@@ -31,6 +38,7 @@ export function dock(host, app) {
     const step = stepNamed(app.step);
     host.hidden = !step.views || (step.points ? !app.doc.count : !app.result);
     if (host.hidden) return;
+    strip.update();
     if (shown !== app.step || views.querySelector(':checked')?.value !== app.view) showViews();
     shown = app.step;
     if (hidden) reveal();
@@ -42,16 +50,18 @@ export function dock(host, app) {
       pointsControl.update();
       if (legend.firstChild !== pointsControl.element) show(legend, pointsControl.element);
     } else if (said.kind === 'points') show(legend, whereNext(app));
-    else if (said.kind === 'steps') showSteps(legend, app, said);
     else if (said.kind === 'scalar') show(legend, scalarLegend(app, said));
     else if (said.kind === 'sets') show(legend, setLegend(said));
     else show(legend, h('p', { class: 'small' }, said.text));
   };
-  app.on('view step result doc points selected motion target', update);
+  app.on('view place step result doc points selected motion target', update);
   app.on('view step', reveal);
   update();
   reveal();
 }
+
+/** The stages that there are: by the letter of the paper there is no merge tree. */
+const available = (app) => stepNamed(app.step).views.filter((view) => !view.needs || !app.result || view.needs(app) || view.id === app.view);
 
 function partsSlider(app) {
   const words = h('p', { class: 'small faint' });
@@ -145,22 +155,4 @@ function scalarLegend(app, { map, marks, unit, exact, step }) {
 
 function setLegend({ a, b, text }) {
   return h('p', { class: 'sets small' }, h('span', { class: 'chip in' }), a, h('span', { class: 'chip out' }), b, h('span', { class: 'faint number' }, text));
-}
-
-function showSteps(legend, app, { name, index, count, text, go }) {
-  // The buttons stay the same elements while one steps, so that the keyboard keeps its place.
-  if (legend.dataset.go !== go || !legend.querySelector('.stepper')) {
-    const step = (by) => () => app[go](app[go === 'setFeature' ? 'feature' : 'round'] + by);
-    show(legend, h('div', { class: 'stepper' },
-      iconButton('previous', `Previous ${name.toLowerCase()}`, step(-1)),
-      h('span', { class: 'number' }),
-      iconButton('next', `Next ${name.toLowerCase()}`, step(1)),
-      h('span', { class: 'small faint' })));
-    legend.dataset.go = go;
-  }
-  const [previous, where, next, what] = legend.firstChild.children;
-  where.textContent = count ? `${name} ${index + 1} of ${count}` : `No ${name.toLowerCase()}`;
-  what.textContent = text;
-  previous.disabled = index <= 0;
-  next.disabled = index >= count - 1;
 }

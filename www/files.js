@@ -27,6 +27,10 @@ const readAll = (files) => Promise.all(files.map(async ({ name, blob }) => {
   }
 }));
 
+/** The same files under names that put them before their poses. */
+export const resting = (files) =>
+  files.map(({ name, blob }) => ({ name: name.replace(/(\.[^./]*)?$/, ' rest$1'), blob }));
+
 /** Everything in a drop, folders included. Must be called before the event handler returns. */
 export function dropped(transfer) {
   const entries = [...transfer.items].filter((item) => item.kind === 'file')

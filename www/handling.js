@@ -1,5 +1,6 @@
 /** What the pointer and the keyboard do to the points of a figure: select, place, drag along the surface. */
 import { pinsOf } from './pins.js';
+import { viewNow } from './stages.js';
 import { stepNamed } from './steps/index.js';
 
 /** How far beside a pin one may point, in pixels. */
@@ -14,7 +15,7 @@ const NUDGES = [6, 9, 13, 18, 26, 36];
  */
 export function handling(app, side, picture) {
   const active = () => stepNamed(app.step).points && app.keypoints.used.length > 0;
-  const movable = () => (side === 'source' ? app.step === 'keypoints' && app.view !== 'candidates' : Boolean(app.target.sequence));
+  const movable = () => (side === 'source' ? app.step === 'keypoints' && !viewNow(app)?.pins : Boolean(app.target.sequence));
 
   const put = (index, vertex, mark) => {
     if (side === 'source') app.keypoints.move(index, vertex, mark);
@@ -57,6 +58,11 @@ export function handling(app, side, picture) {
 
     /** A click beside all pins. @returns {boolean} whether it did something */
     tap(x, y) {
+      if (side === 'source' && viewNow(app)?.faces) {
+        const pick = picture().pick(x, y);
+        if (pick) app.chooseFace(pick[0]);
+        return Boolean(pick);
+      }
       if (side === 'source' && app.step === 'keypoints' && app.keypoints.adding) {
         const vertex = vertexAt(picture(), x, y);
         if (vertex >= 0) app.keypoints.add(vertex);

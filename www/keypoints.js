@@ -26,8 +26,6 @@ export class KeyPoints {
     this.app = app;
     /** What follows from the points in use: `{points, weights, groups, error, energies}`. */
     this.fitted = null;
-    /** The step of the selection that is looked at. */
-    this.shown = 0;
     /** Whether the next click on the source adds a point. */
     this.adding = false;
     this.fit = latest(() => this.#fit());
@@ -89,7 +87,7 @@ export class KeyPoints {
       return;
     }
     run.search = search;
-    this.shown = Math.max(0, run.steps.length - 1);
+    delete app.places.candidates;
     const known = new Map(app.doc.points.map((point) => [point.source, point]));
     const points = Array.from(run.key_points, (vertex) => known.get(vertex) ?? fresh(vertex));
     app.amend({ run, points, count: points.length });
@@ -171,12 +169,6 @@ export class KeyPoints {
     app.edit({ points, count: points.length });
   }
 
-  show(step) {
-    this.shown = Math.min(Math.max(0, step), Math.max(0, (this.app.doc.run?.steps.length ?? 0) - 1));
-    this.app.changed('view');
-    this.app.paint();
-  }
-
   setAdding(on) {
     this.adding = on;
     this.app.changed('selected');
@@ -204,8 +196,8 @@ export class KeyPoints {
     const known = run && this.untouched && points.length === run.key_points.length;
     const answer = known ? run : await app.work.run('points', 'weights', () => app.engine.call('fit', { points, parameters: this.parameters }));
     if (!answer) return;
-    const { weights, groups, energies } = answer;
-    this.fitted = { points, weights, groups, energies, error: known ? run.errors.at(-1) : answer.error };
+    const { weights, groups, energies, rounds, fit_errors } = answer;
+    this.fitted = { points, weights, groups, energies, rounds, fit_errors, error: known ? run.errors.at(-1) : answer.error };
     app.changed('points');
     app.paint();
   }

@@ -1,5 +1,6 @@
 /** Keyboard: what each key does, and the sheet that lists them. */
 import { h, show } from './dom.js';
+import { viewsOf, walk } from './stages.js';
 import { stepNamed } from './steps/index.js';
 
 const ORBIT = 24;
@@ -14,10 +15,14 @@ export function keys({ app, stage, timeline, sheet, hands }) {
   const hand = () => (app.step === 'keypoints' ? hands.source : hands.target);
   const middle = () => [stage.host.clientWidth / 2, stage.host.clientHeight / 2];
   const shortcuts = [
-    [['ArrowLeft', 'ArrowRight', 'ArrowUp', 'ArrowDown'], '← → ↑ ↓', 'Turn the creature', (key) => {
+    [['ArrowLeft', 'ArrowRight', 'ArrowUp', 'ArrowDown'], '← →', 'One stage back, on', (key) => {
+      // With the picture in hand, and where there are no stages, arrows turn the creature.
       const [dx, dy] = DIRECTIONS[key];
-      stage.move('orbit', dx * ORBIT, dy * ORBIT);
+      const turns = dy || document.activeElement?.tagName === 'CANVAS' || !viewsOf(app.step).length;
+      if (turns) stage.move('orbit', dx * ORBIT, dy * ORBIT);
+      else walk(app, dx);
     }],
+    [[], '↑ ↓, and ← → in the picture', 'Turn the creature', () => {}],
     [[], 'Shift ← → ↑ ↓', 'Move the selected point', () => {}],
     [['+', '=', '-'], '+ −', 'Nearer, farther', (key) => stage.move('zoom', key === '-' ? 1 / ZOOM : ZOOM, ...middle())],
     [['f'], 'F', 'All of it in the picture', () => stage.move('frame')],
@@ -34,7 +39,7 @@ export function keys({ app, stage, timeline, sheet, hands }) {
     [['?'], '?', 'This sheet', () => open(sheet, shortcuts)],
   ];
   window.addEventListener('keydown', (event) => {
-    if (sheet.open) return;
+    if (document.querySelector('dialog[open]')) return;
     if ((event.ctrlKey || event.metaKey) && !event.altKey && returns(app, event)) return;
     if (event.ctrlKey || event.metaKey || event.altKey || mine(event)) return;
     if (event.shiftKey && event.key in DIRECTIONS && app.selected >= 0 && stepNamed(app.step).points) {

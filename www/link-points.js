@@ -9,7 +9,7 @@ const AWAY = '-';
 const RECIPE = ['faces', 'poses', 'exact'];
 
 /** Writes the state of key points, target and transfer into the fields of a link. */
-export function writePoints(app, fields) {
+export function writePoints(app, fields, own = false) {
   const { doc, source, about, selected } = app;
   for (const [name, value] of Object.entries(doc.search)) fields[`k.${name}`] = JSON.stringify(value);
   if (doc.method) fields.method = doc.method;
@@ -19,10 +19,10 @@ export function writePoints(app, fields) {
     for (const name of RECIPE) if (target.recipe[name] !== about.recipe[name]) fields[`target.${name}`] = target.recipe[name];
   }
   // Vertex numbers mean nothing on another mesh than this.
-  if (!doc.count || source?.kind === 'files') return;
+  if (!doc.count || (source?.kind === 'files' && !own)) return;
   const used = doc.points.slice(0, doc.count);
   fields.points = used.map((point) => point.source).join();
-  if (target?.kind === 'zoo') fields.pairs = used.map(written).join();
+  if (target?.kind === 'zoo' || (target && own)) fields.pairs = used.map(written).join();
   if (selected >= 0) fields.point = selected + 1;
 }
 
@@ -54,15 +54,17 @@ function read(vertex, text) {
 /**
  * Puts the points of a link into the page, and opens the target that it names.
  * @param {object|null} recipe of the target
+ * @param {{files: {name: string, blob: Blob}[], options: object}|null} target the visitor's own
  */
-export async function goToPoints(app, { points, selected }, recipe) {
+export async function goToPoints(app, { points, selected }, recipe, target = null) {
   const { vertices } = app.sequence.sizes;
   const known = points.filter(({ source }) => source < vertices);
   if (known.length) app.amend({ points: known.map(({ source }) => fresh(source)), count: known.length });
-  if (recipe) {
+  if (recipe || target?.files.length) {
     // The target is open first, so that nothing has to be proposed that the link knows.
     const places = (size) => known.map((point) => (point.target < size ? point : fresh(point.source)));
-    if (!(await app.target.openCreature(recipe, known.length ? places : undefined))) return;
+    const wanted = known.length ? places : undefined;
+    if (!(await (recipe ? app.target.openCreature(recipe, wanted) : app.target.openFiles(target.files, target.options, wanted)))) return;
     app.history.restart(app.doc);
   }
   if (known.length && selected >= 0) app.select(selected);

@@ -3,6 +3,7 @@
  * default is written. Files of the visitor's own cannot travel in a link.
  */
 import { placesOf, writePoints } from './link-points.js';
+import { viewNow } from './stages.js';
 import { STEPS } from './steps/index.js';
 import { METHODS } from './steps/methods.js';
 import { isValid } from './steps/parameters.js';
@@ -30,15 +31,15 @@ function decode(text) {
   }
 }
 
-/** The state of the page as a hash. */
-export function writeLink(app, timeline) {
+/** The state of the page as a hash. `own`: the visitor's own files go with it, so that vertex numbers mean something. */
+export function writeLink(app, timeline, { own = false } = {}) {
   const fields = {};
   const { source, about } = app;
   if (source?.kind === 'zoo') {
     fields.zoo = source.recipe.name;
     for (const name of RECIPE) if (source.recipe[name] !== about.recipe[name]) fields[name] = source.recipe[name];
   }
-  if (source?.kind === 'src') {
+  if (source?.kind === 'src' || (own && source?.kind === 'files')) {
     for (const [name, value] of Object.entries(source.options)) {
       if (JSON.stringify(value) !== JSON.stringify(about.options[name])) fields[`import.${name}`] = JSON.stringify(value);
     }
@@ -48,7 +49,12 @@ export function writeLink(app, timeline) {
   if (app.step !== 'parts') fields.step = app.step;
   const { views } = app;
   for (const step of STEPS) if (step.views && views[step.id] && views[step.id] !== step.view && (step.id === app.step || !STEPS.find(({ id }) => id === app.step).views)) fields.view = views[step.id];
-  writePoints(app, fields);
+  const view = viewNow(app);
+  if (view && app.places[view.id] !== undefined) fields.at = app.place;
+  if (view?.faces && app.face >= 0) fields.face = app.face;
+  if (app.lessons) fields.lesson = 'open';
+  if (app.guide?.tour) fields.tour = `${app.guide.tour.id}.${app.guide.stop}`;
+  writePoints(app, fields, own);
   if (!app.panel) fields.panel = 'away';
   if (timeline.reference) fields.t = 'reference';
   else if (!timeline.playing && timeline.poses > 1) fields.t = timeline.time.toFixed(2);
@@ -67,10 +73,11 @@ export function applyLink(fields, app) {
     if (name.startsWith('k.') && isValidSearch(name.slice(2), parsed)) search[name.slice(2)] = parsed;
   }
   app.reset({ changes, search, method: METHODS.some(([id]) => id === fields.method) ? fields.method : '' });
+  app.lessons = fields.lesson === 'open';
   app.step = STEPS.some(({ id }) => id === fields.step) ? fields.step : 'parts';
   app.views = {};
   for (const { id, views } of STEPS) if (views?.some((view) => view.id === fields.view)) app.views[id] = fields.view;
-  app.changed('parameters', 'step', 'view');
+  app.changed('parameters', 'step', 'view', 'lessons');
 }
 
 /** The recipe of the creature that a link names; null if it names none that exists. */
@@ -103,8 +110,19 @@ export function placeOf(fields) {
     reference: fields.t === 'reference',
     time: fields.t !== undefined && Number.isFinite(time) ? time : undefined,
     points: placesOf(fields),
+    at: numberOf(fields.at),
+    face: numberOf(fields.face),
     camera: camera?.length >= 6 && camera.every(Number.isFinite) ? camera : undefined,
   };
+}
+
+/** A whole number that is not negative; undefined for anything else. */
+const numberOf = (text) => (/^\d{1,9}$/.test(text ?? '') ? Number(text) : undefined);
+
+/** The tour of a link, as its name and stop. @returns {[string, number]|null} */
+export function tourOf({ tour = '' }) {
+  const [id, stop] = tour.split('.');
+  return id ? [id, numberOf(stop) ?? 0] : null;
 }
 
 function parse(text) {

@@ -9,24 +9,31 @@ import { chosen } from './files.js';
 import { handling } from './handling.js';
 import { keys } from './keys.js';
 import { goToPoints } from './link-points.js';
-import { applyLink, followState, optionsOf, placeOf, readLink, recipeOf } from './link.js';
+import { applyLink, followState, optionsOf, placeOf, readLink, recipeOf, tourOf } from './link.js';
+import { keepOffline } from './offline.js';
 import { notices } from './notice.js';
+import { overlay } from './overlay.js';
 import { panel } from './panel.js';
 import { pointers } from './pointer.js';
 import { progressBar } from './progress.js';
 import { rail } from './rail.js';
-import { copyLink, saveParts, savePicture } from './save.js';
+import { saveParts, savePicture } from './save.js';
+import { addressOf, share } from './share.js';
 import { Stage } from './stage.js';
 import { Studio } from './studio.js';
 import { tag } from './tag.js';
 import { theme } from './theme.js';
 import { Timeline } from './timeline.js';
+import { Guide, openTours, tourCard } from './tour.js';
 import { compile } from './wasm.js';
 
 const NARROW = matchMedia('(max-width: 720px)');
 const query = new URLSearchParams(location.search);
 const bundle = (name) => compile(new URL(`../pkg/${name}_bg.wasm`, import.meta.url));
 const element = (id) => document.getElementById(id);
+/** In a frame of somebody else's page: `?embed` with the controls of the picture, `?embed=bare` with none. */
+const embedded = query.has('embed');
+if (embedded) document.documentElement.dataset.embed = query.get('embed') === 'bare' ? 'bare' : 'controls';
 
 // Both downloads start at once; the creature is made while the picture is still being set up.
 const engine = new Engine(bundle('worker'));
@@ -52,6 +59,10 @@ stage.started.catch((error) => {
 });
 
 const timeline = new Timeline(element('timeline'), app);
+app.openProject = openProject;
+app.timeline = timeline;
+const guide = new Guide(app, { play: () => app.play() });
+app.guide = guide;
 const turnTheme = theme((dark) => {
   stage.dark = dark;
   if (app.second) app.second.dark = dark;
@@ -65,8 +76,9 @@ const showKeys = keys({ app, stage, timeline, sheet: element('keys'), hands });
 const undo = iconButton('undo', 'Undo (Ctrl Z)', () => app.undo(), { id: 'undo' });
 const redo = iconButton('redo', 'Redo (Ctrl Shift Z)', () => app.redo(), { id: 'redo' });
 show(element('tools'), undo, redo,
-  iconButton('link', 'Copy a link to exactly this', () => copyLink(app, timeline)),
-  iconButton('picture', 'Save the picture', () => savePicture(app)),
+  iconButton('tours', 'Guided tours', () => openTours(element('tours'), guide), { id: 'open-tours' }),
+  iconButton('link', 'Share: a link, a frame, a file', () => share(element('share'), app, timeline), { id: 'open-share' }),
+  iconButton('picture', 'Save the picture', () => savePicture(app), { class: 'icon-button roomy' }),
   iconButton('save', 'Save the parts as GLB', () => saveParts(app), { class: 'icon-button roomy' }),
   iconButton('frame', 'All of it in the picture (F)', () => stage.move('frame')),
   iconButton('sun', 'Light or dark', turnTheme),
@@ -81,6 +93,14 @@ function showReturns() {
 
 // Two frames later what was painted is on the screen.
 app.on('result', () => app.result && requestAnimationFrame(() => requestAnimationFrame(() => (ready.segmented = true))));
+app.addEventListener('result', () => setTimeout(keepOffline, 1500), { once: true });
+if (embedded) {
+  const whole = element('whole');
+  whole.hidden = query.get('embed') === 'bare';
+  whole.href = location.href;
+  whole.addEventListener('click', () => (whole.href = addressOf(app, timeline)));
+}
+
 /** The picture of the target, made when it is first needed. */
 function makeSecond(host) {
   const second = new Stage(host, bundle('page'), query.get('backend'));
@@ -95,8 +115,9 @@ async function start() {
   openAddress();
   rail(element('rail'), app);
   const studio = new Studio(app, { hosts: [element('stage'), element('second')], seam: element('seam'), make: makeSecond });
-  panel(element('panel'), app);
+  panel(element('panel'), app, tourCard(guide));
   dock(element('dock'), app);
+  overlay(app, element('stage'));
   followState(app, timeline);
   studio.keepClear();
   window.addEventListener('hashchange', openAddress);
@@ -105,15 +126,36 @@ async function start() {
 /** Opens what the address asks for and starts on the first creature otherwise. Does not wait for the parts. */
 function openAddress() {
   const fields = readLink();
+  const tour = tourOf(fields);
+  const opened = tour && !fields.zoo ? beginTour(fields, tour) : enter(fields, () => {
+    const address = query.get('src');
+    return address ? openOr(address, optionsOf(fields, app.about)) : app.openCreature(recipeOf(fields, app.about) ?? {});
+  });
+  if (tour && fields.zoo) app.guide.resume(...tour);
+  opened.catch((error) => app.say(error.message));
+}
+
+/** Puts the state of a link into the page and opens its source with `open`. @param {object} [own] target of the visitor's own */
+function enter(fields, open, own) {
   const place = placeOf(fields);
   applyLink(fields, app);
-  app.setPanel(fields.panel !== 'away' && !NARROW.matches);
-  app.addEventListener('source', () => goTo(place, recipeOf(fields, app.about, ['target', 'target.'])), { once: true });
-  const address = query.get('src');
-  const opened = address
-    ? openOr(address, optionsOf(fields, app.about))
-    : app.openCreature(recipeOf(fields, app.about) ?? {});
-  opened.catch((error) => app.say(error.message));
+  app.setPanel(fields.panel !== 'away' && !NARROW.matches && !embedded);
+  app.addEventListener('source', () => goTo(place, recipeOf(fields, app.about, ['target', 'target.']), own), { once: true });
+  return open();
+}
+
+async function beginTour(fields, [id, stop]) {
+  applyLink(fields, app);
+  app.setPanel(!embedded);
+  if (!(await app.guide.begin(id, stop))) await app.openCreature({});
+}
+
+/** Opens a file that is a whole project. */
+async function openProject({ state, source, target }) {
+  const fields = readLink(state);
+  const options = { ...app.about.options, ...source.options };
+  await enter(fields, () => (source.files.length ? app.openFiles(source.files, options) : app.openCreature(recipeOf(fields, app.about) ?? {})),
+    { files: target.files, options: { ...app.about.options, ...target.options } });
 }
 
 /** Opens what `?src=` names, or the first creature with a word about what went wrong. */
@@ -125,9 +167,11 @@ async function openOr(address, options) {
 }
 
 /** The number of parts, the points, the moment and the camera of a link. */
-function goTo({ parts, time, reference, camera, points }, target) {
+function goTo({ parts, time, reference, camera, points, at, face }, target, own) {
   if (parts !== undefined) app.amend({ wanted: parts });
-  goToPoints(app, points, target);
+  if (at !== undefined) app.places = { [app.view]: at };
+  if (face !== undefined) app.face = face;
+  goToPoints(app, points, target, own);
   if (camera) stage.camera = camera;
   // Points are placed more easily on what stands still.
   if (reference || (app.step === 'target' && time === undefined)) timeline.toggleReference();
@@ -153,6 +197,8 @@ window.sinew = {
     busy: app.busy && { stage: app.busy.stage, done: app.busy.done },
     error: app.notice?.kind === 'error' ? app.notice.text : null,
     time: timeline.reference ? -1 : timeline.time,
+    place: app.place,
+    tour: app.guide.tour && [app.guide.tour.id, app.guide.stop],
     panel: app.panel,
     flowing: stage.flowing != null,
     points: app.doc.count,
@@ -164,7 +210,7 @@ window.sinew = {
     moves: app.transfer.motion && { method: app.transfer.method, pairs: app.transfer.motion.pairs, handles: app.transfer.motion.handles, seconds: app.transfer.motion.took },
     undo: app.history.past.length,
     redo: app.history.future.length,
-    drawn: stage.drawn && (app.second?.drawn ?? true),
+    drawn: stage.drawn && (!app.second || app.second.host.hidden || app.second.drawn),
     plain: stage.pace.plain,
     frame: Math.round(stage.pace.took),
   }),

@@ -2,11 +2,11 @@
 import { h, iconButton, show } from './dom.js';
 import { STEPS } from './steps/index.js';
 
-/** @param {HTMLElement} host @param {import('./app.js').App} app */
-export function panel(host, app) {
+/** @param {HTMLElement} host @param {import('./app.js').App} app @param {HTMLElement} above what stands over every step */
+export function panel(host, app, above) {
   const close = iconButton('close', 'Put the panel away (P)', () => app.setPanel(false));
   const bodies = new Map(STEPS.map((step) => [step.id, h('div', { class: 'panel-body' }, step.build(app))]));
-  show(host, close, ...bodies.values());
+  show(host, close, above, ...bodies.values());
   const open = iconButton('panel', 'Show the panel (P)', () => app.setPanel(true), { class: 'icon-button panel-opener' });
   host.after(open);
   const update = () => {

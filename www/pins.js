@@ -1,5 +1,6 @@
 /** The pins of one figure, and the numbers on them. The picture draws the pins; the numbers are text over it. */
 import { h, show } from './dom.js';
+import { placeIn, viewNow } from './stages.js';
 import { stepNamed } from './steps/index.js';
 
 /** A head must have this radius for a number to be readable on it, in pixels. */
@@ -12,7 +13,8 @@ const READABLE = 6;
  */
 export function pinsOf(app, side) {
   if (!stepNamed(app.step).points) return [];
-  if (app.step === 'keypoints' && app.view === 'candidates') return side === 'source' ? chosenSoFar(app) : [];
+  const view = viewNow(app);
+  if (view?.pins) return side === 'source' ? view.pins(app, placeIn(app, view)) : [];
   const paired = Boolean(app.target.sequence) && app.step !== 'keypoints';
   return app.keypoints.used.map((point, index) => ({ point, index }))
     .filter(({ point }) => side === 'source' || point.target != null)
@@ -28,10 +30,6 @@ export function pinsOf(app, side) {
 function stateOf({ state }, side, paired) {
   if (side === 'target') return state === 'placed' ? 'fixed' : 'proposed';
   return paired && (state === 'missing' || state === 'none') ? 'missing' : 'fixed';
-}
-
-function chosenSoFar({ doc: { run }, keypoints: { shown } }) {
-  return (run?.steps ?? []).slice(0, shown + 1).map(({ chosen }, index) => ({ index, pin: { vertex: chosen, colour: index, selected: index === shown } }));
 }
 
 /** Keeps the pins of a figure up to date. */
@@ -62,7 +60,7 @@ export function pins(app, side, stage, host) {
       number.style.transform = `translate(${at.x.toFixed(1)}px, ${at.y.toFixed(1)}px) translate(-50%, -50%)`;
     });
   };
-  app.on('doc points target step view selected hovered source', update);
+  app.on('doc points target step view place selected hovered source', update);
   stage.addEventListener('drawn', place);
   update();
 }

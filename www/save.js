@@ -1,26 +1,11 @@
-/** What can be taken away: the link, the picture, the parts as a GLB. */
+/** What can be taken away as a file: pictures, meshes, numbers. */
 import { h } from './dom.js';
-import { writeLink } from './link.js';
+import { number } from './format.js';
 
-const OWN_TARGET = 'Link copied. Your own target stays on this computer and cannot be in a link: whoever opens it sees the source with its key points.';
-const OWN_FILE = 'Link copied. Your own file stays on this computer and cannot be in a link: whoever opens it sees the first creature with your settings.';
-
-export async function copyLink(app, timeline) {
-  const url = new URL(location.href);
-  url.hash = writeLink(app, timeline);
+/** The picture as it is, or of a size of its own in pixels. @param {[number, number]|null} size */
+export async function savePicture(app, size = null) {
   try {
-    await navigator.clipboard.writeText(url.href);
-    const own = app.source?.kind === 'files' ? OWN_FILE : app.doc.target?.source.kind === 'files' && OWN_TARGET;
-    app.say(own || 'Link copied.', 'news');
-  } catch {
-    history.replaceState(null, '', url.hash);
-    app.say('The browser did not let the page copy. The link is in the address bar.', 'news');
-  }
-}
-
-export async function savePicture(app) {
-  try {
-    saveBlob(await app.stage.picture(), `${fileName(app)}.png`);
+    saveBlob(await app.stage.picture(size), `${fileName(app)}.png`);
   } catch (error) {
     app.say(error.message);
   }
@@ -55,6 +40,42 @@ export async function saveParts(app) {
   if (bytes) saveBlob(new Blob([bytes], { type: 'model/gltf-binary' }), `${fileName(app)}.glb`);
 }
 
+/** The creature as a skin with a joint for each part, and what that loses in words. */
+export async function saveRigid(app) {
+  const made = await app.exportRigid();
+  if (!made) return;
+  saveBlob(new Blob([made.bytes], { type: 'model/gltf-binary' }), `${fileName(app)}-rigid.glb`);
+  app.say(`The rigid skin is off by ${number(1000 * made.rms, 2)} ‰ of its size, by ${number(1000 * made.error, 2)} ‰ at most.`, 'news');
+}
+
+/** The parts: labels of the faces, sizes, residuals, parameters. */
+export function partsFile({ sequence, result, parameters }) {
+  return json({
+    source: { name: sequence.name, ...sequence.sizes },
+    parameters: { ...parameters, epsilon: result.epsilon, gamma: result.gamma },
+    parts: result.parts,
+    rigid_residual: result.rigid_residual,
+    labels: Array.from(result.labels),
+    seconds: Object.fromEntries(result.seconds),
+    warnings: result.warnings.map(({ message }) => message),
+  });
+}
+
+/** The key points: vertices, errors, how they were chosen. */
+export function pointsFile({ sequence, doc, keypoints }) {
+  const { run, count } = doc;
+  return json({
+    source: { name: sequence.name, ...sequence.sizes },
+    parameters: keypoints.parameters,
+    key_points: keypoints.used.map(({ source }) => source),
+    errors: run && keypoints.untouched ? Array.from(run.errors).slice(0, count) : undefined,
+    error: keypoints.error,
+    candidates: run && Array.from(run.candidates),
+    replacements: run?.replacements,
+    seconds: run && Object.fromEntries(run.seconds),
+  });
+}
+
 /** @param {Blob} blob */
 export function saveBlob(blob, name) {
   const url = URL.createObjectURL(blob);
@@ -62,4 +83,4 @@ export function saveBlob(blob, name) {
   setTimeout(() => URL.revokeObjectURL(url), 10_000);
 }
 
-const fileName = ({ sequence }) => `sinew-${(sequence?.name ?? 'picture').replace(/\.[^.]*$/, '').replace(/[^\w-]+/g, '-')}`;
+export const fileName = ({ sequence }) => `sinew-${(sequence?.name ?? 'picture').replace(/\.[^.]*$/, '').replace(/[^\w-]+/g, '-')}`;

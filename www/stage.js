@@ -20,6 +20,8 @@ const MOST_REBUILDS = 5;
 const FLOWS = 900;
 /** How near to a pin's head is on it, in CSS pixels. */
 const REACH = 8;
+/** Lines and pins in a picture of a size of its own are this many times as thick as one pixel to a pixel would make them. */
+const PICTURE_SCALE = 2;
 const PIN_STATES = { fixed: 0, proposed: 1, missing: 2 };
 /** Where frames are slow: how long the picture must be still before it is drawn in full, in milliseconds. */
 const SETTLES = 350;
@@ -134,7 +136,7 @@ export class Stage extends EventTarget {
       move(this.view, kept);
       if (kept.turn) turn(this.view, kept.turn);
       if (kept.camera) this.view.set_camera(kept.camera);
-      else this.view.frame();
+      else this.#frameAll();
     }
     this.view.set_time(kept.time);
     this.view.set_boundaries(kept.boundaries);
@@ -251,7 +253,14 @@ export class Stage extends EventTarget {
 
   /** Until the visitor moves the camera, it keeps the whole motion in the free part of the picture. */
   #frameUnlessMoved() {
-    if (this.view && this.kept.mesh && !this.kept.camera) this.view.frame();
+    if (this.view && this.kept.mesh && !this.kept.camera) this.#frameAll();
+  }
+
+  /** Fits the whole motion into the picture, and not the reference alone where that is shown. */
+  #frameAll() {
+    this.view.set_time(Math.max(0, this.kept.time));
+    this.view.frame();
+    this.view.set_time(this.kept.time);
   }
 
   /** What assistive technology says of the picture. */
@@ -374,10 +383,18 @@ export class Stage extends EventTarget {
   /** Moves the camera: `orbit`, `pan`, `zoom` or `frame` of the Viewport. */
   move(method, ...values) {
     if (!this.view) return;
-    this.view[method](...values);
+    if (method === 'frame') this.#frameAll();
+    else this.view[method](...values);
     const camera = this.view.camera();
     Object.assign(this.kept, { camera: method === 'frame' ? null : camera, turn: turnOf(camera) });
     this.#tellCamera(method, values);
+  }
+
+  /** Turns and comes nearer until some faces are seen. @param {Uint32Array} faces */
+  look(faces) {
+    if (!this.view || !faces.length) return;
+    this.view.frame_faces(faces);
+    this.camera = this.view.camera();
   }
 
   /** Six numbers that show any figure in the same way: target x, y, z, yaw, pitch, distance, in radii of its motion. */
@@ -464,6 +481,16 @@ export class Stage extends EventTarget {
     return this.view?.group_colours() ?? new Uint8Array();
   }
 
+  /** Where some vertices are now, three coordinates each; nothing without a GPU. @param {Uint32Array} numbers */
+  vertices(numbers) {
+    return this.kept.mesh && this.view ? this.view.vertices(numbers) : new Float32Array();
+  }
+
+  /** Where points are on the canvas: x, y and depth each. @param {Float32Array} points three coordinates each */
+  project(points) {
+    return this.view ? this.view.project(points) : new Float32Array(points.length);
+  }
+
   /** What lies under a point of the canvas: `[face, b0, b1, b2, x, y, z]`. */
   pick(x, y) {
     return this.kept.mesh && this.view ? this.view.pick(x, y) : undefined;
@@ -479,13 +506,29 @@ export class Stage extends EventTarget {
     return this.view?.colour_map(name) ?? null;
   }
 
-  /** The picture as it is now, as a PNG. @returns {Promise<Blob>} */
-  async picture() {
+  /**
+   * The picture as it is now, or the figure alone in a picture of another size, as a PNG.
+   * @param {[number, number]|null} size width and height in pixels
+   * @returns {Promise<Blob>}
+   */
+  async picture(size = null) {
     if (!this.view) throw new Error('There is no picture to save without a GPU.');
     this.#simplify(true);
+    const camera = this.view.camera();
+    if (size) {
+      this.view.set_insets(0, 0, 0, 0);
+      this.view.resize(size[0] / PICTURE_SCALE, size[1] / PICTURE_SCALE, PICTURE_SCALE);
+      if (!this.kept.camera) this.#frameAll();
+    }
     this.view.redraw();
     this.view.render();
     const blob = await new Promise((resolve) => this.canvas.toBlob(resolve, 'image/png'));
+    if (size) {
+      this.view.set_insets(...this.kept.insets);
+      this.#fit();
+      this.view.set_camera(camera);
+      this.view.redraw();
+    }
     if (!blob) throw new Error('The browser could not save the picture.');
     return blob;
   }

@@ -35,7 +35,8 @@ export class Studio {
     app.on('source', () => this.#name());
     app.on('motion', () => this.#move());
     app.on('panel step result source target', () => requestAnimationFrame(() => this.keepClear()));
-    new ResizeObserver(() => this.keepClear()).observe(hosts[0].parentElement);
+    const sizes = new ResizeObserver(() => this.keepClear());
+    for (const element of [hosts[0].parentElement, document.querySelector('.below')]) sizes.observe(element);
     NARROW.addEventListener('change', () => this.#arrange());
     this.#arrange();
   }

@@ -33,10 +33,11 @@ export class Target {
     return this.#open(source, async () => ({ recipe: source.recipe }), places);
   }
 
-  /** @param {{name: string, blob: Blob}[]} files */
-  openFiles(files, options = {}) {
+  /** @param {{name: string, blob: Blob}[]} files @param {object|null} options null: whatever the files are */
+  async openFiles(files, options = null, places) {
+    if (!options && (await this.app.tookProject(files))) return true;
     const source = { kind: 'files', files, options: { ...this.app.about.options, ...options } };
-    return this.#open(source, () => collect(files, source.options));
+    return this.#open(source, () => collect(files, source.options), places);
   }
 
   async #open(source, payload, places) {

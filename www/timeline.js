@@ -25,6 +25,7 @@ export class Timeline {
     app.on('play', () => CALM.matches || this.setPlaying(true));
     app.on('rest', () => this.#rest());
     app.on('resume', () => this.#resume());
+    app.on('released', () => this.#show());
     app.stage.addEventListener('tick', ({ now }) => this.#tick(now));
   }
 
@@ -126,7 +127,7 @@ export class Timeline {
   #show() {
     const still = this.reference || this.poses === 0;
     const shown = this.app.sequence?.loop ? wrap(this.time, this.end || 1) : this.time;
-    this.app.stage.time = still ? -1 : shown;
+    this.app.stage.time = this.app.frozen ?? (still ? -1 : shown);
     if (this.app.transfer.motion) this.app.second.time = still ? -1 : shown;
     this.range.valueAsNumber = this.time;
     const label = this.playing ? 'Pause (space)' : 'Play (space)';

@@ -8,10 +8,12 @@ import init, { Engine } from '../pkg/worker.js';
 const PROGRESS_EVERY = 60;
 
 let engine;
+/** What the engine has of the browser's memory. @type {WebAssembly.Memory} */
+let memory;
 
 const operations = {
   start: async ({ module }) => {
-    await init({ module_or_path: module });
+    ({ memory } = await init({ module_or_path: module }));
     engine = new Engine();
     return Engine.about();
   },
@@ -21,6 +23,7 @@ const operations = {
   segment: ({ parameters }, progress) => engine.segment(parameters, progress),
   parts: ({ parameters, parts }, progress) => engine.parts(parameters, parts, progress),
   export: ({ labels, colours }) => engine.export(labels, colours),
+  export_rigid: ({ labels }) => engine.export_rigid(labels),
   keypoints: ({ parameters }, progress) => engine.keypoints(parameters, progress),
   fit: ({ points, parameters }) => engine.fit(points, parameters),
   target: ({ files, recipe, options }) => (recipe ? engine.target_zoo(recipe) : engine.target(files, options)),
@@ -45,7 +48,7 @@ async function answer({ id, operation, ...payload }) {
   } catch (error) {
     // The engine throws sentences. Anything else, such as “unreachable”, means that it is broken for good.
     if (typeof error === 'string') self.postMessage({ id, error });
-    else self.postMessage({ id, crash: String(error) });
+    else self.postMessage({ id, crash: String(error), memory: memory?.buffer.byteLength ?? 0 });
   }
 }
 

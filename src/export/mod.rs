@@ -4,5 +4,6 @@ pub mod animation;
 mod container;
 pub mod glb;
 pub mod labels;
+pub mod rigid;
 pub mod skin;
 mod timing;

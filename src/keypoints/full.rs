@@ -1,6 +1,6 @@
 //! Sets of key points on the mesh itself: weights, groups, fits.
 
-use super::result::Fitted;
+use super::result::{Fitted, Rounds};
 use super::surface::Surface;
 use crate::sequence::Sequence;
 use crate::skinning::{Fit, FitParameters, Fitter, Rig, Rows, clusters};
@@ -73,11 +73,15 @@ impl<'a> Full<'a> {
         let groups = self.groups(&weights);
         let fitter = self.fitter(&weights, &groups);
         let in_mesh_units =
-            |fit: Fit| Fit { maps: fit.maps.iter().map(|m| rescaled(m, self.surface.ball)).collect(), ..fit };
-        let fits: Vec<Fit> = self.surface.poses.iter().map(|pose| in_mesh_units(fitter.fit(pose))).collect();
+            |maps: &[DAffine3]| -> Vec<DAffine3> { maps.iter().map(|m| rescaled(m, self.surface.ball)).collect() };
+        let each = self.surface.poses.iter().map(|pose| {
+            let (fit, rounds) = fitter.fit_in_rounds(pose);
+            (Fit { maps: in_mesh_units(&fit.maps), ..fit }, rounds.iter().map(|maps| in_mesh_units(maps)).collect())
+        });
+        let (fits, rounds): (Vec<Fit>, Vec<Rounds>) = each.unzip();
         let error = mean(fits.iter().map(|fit| fit.error));
         let groups = self.surface.number.iter().map(|&n| groups[n as usize]).collect();
-        Fitted { weights, groups, fits, error }
+        Fitted { weights, groups, fits, rounds, error }
     }
 
     /// Rows of the welded vertices.

@@ -3,7 +3,11 @@
 use crate::skinning::Fit;
 use crate::warning::Warning;
 use crate::weights::{Weights, WeightsError};
+use glam::DAffine3;
 use serde::Serialize;
+
+/// The maps of the points after each round of a fit, in mesh units: one list for each of its energies.
+pub type Rounds = Vec<Vec<DAffine3>>;
 
 /// Key points, what moves by them, and everything that the search saw on the way.
 #[derive(Clone, Debug)]
@@ -14,7 +18,7 @@ pub struct KeyPoints {
     /// reference, over all poses and all vertices that faces use, in radii of the unit sphere. The last one is measured
     /// on the mesh itself; on large meshes those before it are measured on a coarse one.
     pub errors: Vec<f64>,
-    /// The candidates in the order they were found.
+    /// The candidates in the order they were found; at the end key points that lie between them.
     pub candidates: Vec<u32>,
     /// What was tried when points were added, step by step.
     pub steps: Vec<Step>,
@@ -26,6 +30,8 @@ pub struct KeyPoints {
     pub groups: Vec<u32>,
     /// One fit a pose, with all key points.
     pub fits: Vec<Fit>,
+    /// What each fit came by.
+    pub rounds: Vec<Rounds>,
     /// What was noticed.
     pub warnings: Vec<Warning>,
     /// Seconds by step, in the order in which the steps ran. The only part of a result that differs from run to run.
@@ -41,6 +47,8 @@ pub struct Fitted {
     pub groups: Vec<u32>,
     /// One fit a pose.
     pub fits: Vec<Fit>,
+    /// What each fit came by.
+    pub rounds: Vec<Rounds>,
     /// Mean of the fits' errors, in radii of the unit sphere; 0 where there is no pose.
     pub error: f64,
 }

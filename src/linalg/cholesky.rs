@@ -79,12 +79,25 @@ impl Cholesky {
             CholeskySymbolicParams { supernodal_flop_ratio_threshold: BLOCKS, ..CholeskySymbolicParams::default() };
         let symbolic = factorize_symbolic_cholesky(structure, Side::Upper, ordering, parameters);
         let symbolic = symbolic.map_err(|_| NotPositiveDefinite)?;
-        let mut values = vec![0.0; symbolic.len_val()];
-        let scratch = symbolic.factorize_numeric_llt_scratch::<f64>(Par::Seq, Default::default());
+        let values = vec![0.0; symbolic.len_val()];
+        let mut factor = Self { symbolic, values };
+        factor.again(matrix)?;
+        Ok(factor)
+    }
+
+    /// Factors another matrix with entries in the same places, in the order of elimination that was found for the first.
+    /// After an error the factor is worth nothing.
+    pub fn again(&mut self, matrix: &Upper) -> Result<(), NotPositiveDefinite> {
+        let n = self.size();
+        if matrix.starts.len() != n + 1 || !matrix.values.iter().all(|v| v.is_finite()) {
+            return Err(NotPositiveDefinite);
+        }
+        let structure = SymbolicSparseColMatRef::new_checked(n, n, &matrix.starts, None, &matrix.rows);
+        let scratch = self.symbolic.factorize_numeric_llt_scratch::<f64>(Par::Seq, Default::default());
         let mut buffer = MemBuffer::try_new(scratch).map_err(|_| NotPositiveDefinite)?;
         let entries = SparseColMatRef::new(structure, &matrix.values);
-        let done = symbolic.factorize_numeric_llt(
-            &mut values,
+        let done = self.symbolic.factorize_numeric_llt(
+            &mut self.values,
             entries,
             Side::Upper,
             LltRegularization::default(),
@@ -93,11 +106,7 @@ impl Cholesky {
             Default::default(),
         );
         let done = done.is_ok();
-        if done && values.iter().all(|v| v.is_finite()) {
-            Ok(Self { symbolic, values })
-        } else {
-            Err(NotPositiveDefinite)
-        }
+        if done && self.values.iter().all(|v| v.is_finite()) { Ok(()) } else { Err(NotPositiveDefinite) }
     }
 
     /// The number of unknowns.
@@ -128,7 +137,7 @@ impl Cholesky {
 impl Upper {
     /// The transpose of a lower triangle given by entries (row, column, value): those of one place are summed, those above
     /// the diagonal and outside the matrix left out.
-    fn new(n: usize, entries: &[(u32, u32, f64)]) -> Result<Self, NotPositiveDefinite> {
+    pub fn new(n: usize, entries: &[(u32, u32, f64)]) -> Result<Self, NotPositiveDefinite> {
         let inside = |&&(row, column, _): &&(u32, u32, f64)| column <= row && (row as usize) < n;
         let mut sorted: Vec<(u32, u32, f64)> = entries.iter().filter(inside).copied().collect();
         sorted.sort_by_key(|&(row, column, _)| (row, column));

@@ -59,6 +59,8 @@ pub struct Steps {
     pub merges: Vec<Merge>,
     /// #F part numbers before boundaries were smoothed.
     pub unsmoothed: Vec<u32>,
+    /// #F: 1 where a face lay in the band around a boundary in which smoothing could move it (§3.4).
+    pub band: Vec<u8>,
 }
 
 /// A feature face and its influence region (§3.2 steps 2 to 4).

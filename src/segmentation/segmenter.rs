@@ -124,10 +124,16 @@ impl Segmenter {
             rounds,
             merges,
             unsmoothed: Vec::new(),
+            band: Vec::new(),
         };
         let warnings = warnings(sequence, gradients.degenerate());
         let parameters = parameters.clone();
         Ok(Self { parameters, geometry, weights, deformation: distances, faces, finest, steps, warnings, seconds })
+    }
+
+    /// #E pairs of neighbouring faces, and the weight (Eq. 5) of the dual edge between them.
+    pub fn dual_edges(&self) -> impl Iterator<Item = ([u32; 2], f64)> {
+        self.geometry.graph.edges().iter().zip(&self.weights).map(|(edge, &weight)| (edge.faces, weight))
     }
 
     /// The merges of the tree, cheapest first.
@@ -152,10 +158,10 @@ impl Segmenter {
         seconds.push(("refinement", refined - started));
         let unsmoothed = labels.clone();
         let residual_before_smoothing = self.residual(&labels, count);
-        self.smooth(&mut labels, count, residual_before_smoothing);
+        let band = self.smooth(&mut labels, count, residual_before_smoothing);
         count = clustering::compact(&mut labels);
         seconds.push(("smoothing", clock::seconds() - refined));
-        let steps = Steps { unsmoothed, ..self.steps.clone() };
+        let steps = Steps { unsmoothed, band, ..self.steps.clone() };
         Segmentation {
             parts: self.parts(&labels, count),
             rigid_residual: self.residual(&labels, count),
@@ -174,32 +180,36 @@ impl Segmenter {
         choice::number_of_parts(&self.steps.merges, self.finest.residual, sizes)
     }
 
-    /// Smooths the boundaries; by default with a hold that is tightened until smoothing costs little rigidity.
-    fn smooth(&self, labels: &mut Vec<u32>, parts: usize, before: f64) {
+    /// Smooths the boundaries; by default with a hold that is tightened until smoothing costs little rigidity. Returns
+    /// the band in which they could move.
+    fn smooth(&self, labels: &mut Vec<u32>, parts: usize, before: f64) -> Vec<u8> {
+        let mut band = vec![0; labels.len()];
         if self.parameters.smoothing == Smoothing::None {
-            return;
+            return band;
         }
         let input = smoothing::Input { geometry: &self.geometry, deformation: &self.deformation, faces: &self.faces };
         let capacity = smoothing::capacities(&input, self.parameters.alpha, self.parameters.smoothing);
         let smoothed = |pull: f64| {
             let mut result = labels.clone();
-            smoothing::smooth(&input, &capacity, &mut result, parts, pull);
+            let band = smoothing::smooth(&input, &capacity, &mut result, parts, pull);
             clustering::absorb_fragments(&self.geometry.graph, &self.weights, &mut result);
-            result
+            (result, band)
         };
         if self.parameters.method == Method::Paper {
-            *labels = smoothed(0.0);
-            return;
+            (*labels, band) = smoothed(0.0);
+            return band;
         }
         let mut pull = PULL;
         for _ in 0..TRIES {
-            let result = smoothed(pull);
+            let result;
+            (result, band) = smoothed(pull);
             if self.residual(&result, parts) <= SMOOTHING_COST * before + finest::RIGID {
                 *labels = result;
-                return;
+                break;
             }
             pull *= TIGHTER;
         }
+        band
     }
 
     /// Rms distance of face centroids from their parts' best rigid motions, over faces and poses, at unit diagonal.

@@ -8,6 +8,7 @@ use super::Smoothing;
 use super::geometry::Geometry;
 use super::motion::{self, FaceMotion};
 use super::statistics::{mean, over};
+use crate::mesh::DualGraph;
 use std::collections::{BTreeMap, VecDeque};
 
 /// The moving mesh, as smoothing sees it.
@@ -44,7 +45,10 @@ pub fn capacities(input: &Input<'_>, alpha: f64, smoothing: Smoothing) -> Vec<f6
 /// `pull` weighs rigidity against shortness: a region that lies on the wrong side and is explained worse by as much as
 /// the mean squared residual costs `pull` times its area, at unit diagonal, where boundary costs its length; both do not
 /// depend on how finely the mesh is divided. 0: the letter of the paper.
-pub fn smooth(input: &Input<'_>, capacity: &[f64], labels: &mut [u32], parts: usize, pull: f64) {
+///
+/// Returns #F: 1 where a face was in the band of a boundary, free to change sides.
+pub fn smooth(input: &Input<'_>, capacity: &[f64], labels: &mut [u32], parts: usize, pull: f64) -> Vec<u8> {
+    let mut free = vec![0; labels.len()];
     let moments = input.faces.moments(labels, parts);
     let mean_square = moments.iter().map(motion::residual).sum::<f64>() / labels.len().max(1) as f64
         + UNSEEN * UNSEEN * input.faces.pose_count() as f64;
@@ -52,8 +56,10 @@ pub fn smooth(input: &Input<'_>, capacity: &[f64], labels: &mut [u32], parts: us
     let mean_length = mean(input.geometry.edge_length.iter().copied());
     let pull = pull / (mean_square * mean_length);
     let pull = if pull.is_finite() { pull } else { 0.0 };
-    for (a, b) in input.geometry.graph.touching(labels) {
-        let band = Band::around(input, labels, a, b);
+    let graph = &input.geometry.graph;
+    let mut borders = Borders::new(graph, labels);
+    for (a, b) in graph.touching(labels) {
+        let band = Band::around(input, labels, a, b, &borders.between(a, b));
         let mut cut = super::max_flow::MinCut::new(band.faces.len());
         for (i, &f) in band.faces.iter().enumerate() {
             let [on_a, on_b] = match band.rim[i] {
@@ -68,7 +74,7 @@ pub fn smooth(input: &Input<'_>, capacity: &[f64], labels: &mut [u32], parts: us
             };
             let common = on_a.min(on_b);
             cut.prefer(i, on_b - common, on_a - common);
-            for link in input.geometry.graph.neighbours(f) {
+            for link in graph.neighbours(f) {
                 if let Some(&j) = band.slot.get(&link.face)
                     && i < j
                 {
@@ -78,8 +84,49 @@ pub fn smooth(input: &Input<'_>, capacity: &[f64], labels: &mut [u32], parts: us
         }
         let (on_side_a, _) = cut.solve();
         for (i, &f) in band.faces.iter().enumerate().filter(|&(i, _)| !band.rim[i]) {
-            labels[f as usize] = if on_side_a[i] { a } else { b };
+            let side = if on_side_a[i] { a } else { b };
+            if labels[f as usize] != side {
+                labels[f as usize] = side;
+                borders.follow(graph, labels, f);
+            }
+            free[f as usize] = 1;
         }
+    }
+    free
+}
+
+/// The dual edges between every two parts. Where parts have moved on, some edges are of another pair by now: whoever asks
+/// looks at the labels.
+struct Borders(BTreeMap<(u32, u32), Vec<u32>>);
+
+impl Borders {
+    fn new(graph: &DualGraph, labels: &[u32]) -> Self {
+        let mut borders = Self(BTreeMap::new());
+        for (e, edge) in graph.edges().iter().enumerate() {
+            borders.add(e as u32, edge.faces.map(|f| labels[f as usize]));
+        }
+        borders
+    }
+
+    fn add(&mut self, edge: u32, [a, b]: [u32; 2]) {
+        if a != b {
+            self.0.entry((a.min(b), a.max(b))).or_default().push(edge);
+        }
+    }
+
+    /// A face has another label.
+    fn follow(&mut self, graph: &DualGraph, labels: &[u32], face: u32) {
+        for link in graph.neighbours(face) {
+            self.add(link.edge, [face, link.face].map(|f| labels[f as usize]));
+        }
+    }
+
+    /// Edges that were ever between two parts, ascending.
+    fn between(&mut self, a: u32, b: u32) -> Vec<u32> {
+        let mut edges = self.0.remove(&(a.min(b), a.max(b))).unwrap_or_default();
+        edges.sort_unstable();
+        edges.dedup();
+        edges
     }
 }
 
@@ -91,12 +138,13 @@ struct Band {
 }
 
 impl Band {
-    fn around(input: &Input<'_>, labels: &[u32], a: u32, b: u32) -> Self {
+    /// `border` are the dual edges among which those between the two parts are.
+    fn around(input: &Input<'_>, labels: &[u32], a: u32, b: u32, border: &[u32]) -> Self {
         let of_pair = |f: u32| labels[f as usize] == a || labels[f as usize] == b;
         let mut band = Self { faces: Vec::new(), rim: Vec::new(), slot: BTreeMap::new() };
         let mut queue = VecDeque::new();
-        for edge in input.geometry.graph.edges() {
-            let [f, g] = edge.faces;
+        for &edge in border {
+            let [f, g] = input.geometry.graph.edges()[edge as usize].faces;
             if labels[f as usize] != labels[g as usize] && of_pair(f) && of_pair(g) {
                 for face in [f, g] {
                     if band.insert(face, false) {

@@ -5,13 +5,20 @@
 //! motions of these points by their biharmonic weights on the target ([`biharmonic`]). The default finds the whole surface of
 //! the target on the source, starting from the pairs ([`spline`], [`registration`]), takes the source's motion apart into
 //! near-rigid bones ([`rig`]), and sets these into the target, joint on joint ([`joints`]). Both give a [`Skin`].
+//! What each face of the source does can also be asked of the target's faces directly ([`gradients`]), and so with
+//! references in different postures ([`posed`]); that gives the positions of vertices, by a [`gradients::Mover`].
 
 pub mod alignment;
 pub mod biharmonic;
+mod checked;
+pub mod correspondence;
 mod error;
+pub mod gradients;
 pub mod joints;
 pub mod kd_tree;
+pub mod mend;
 mod parameters;
+pub mod posed;
 mod prepared;
 pub mod propose;
 pub mod registration;

@@ -1,5 +1,6 @@
 //! The parameters of the transfer.
 
+use super::correspondence::Fitting;
 use serde::{Deserialize, Serialize};
 
 /// What can be turned. The defaults need no turning.
@@ -10,11 +11,19 @@ pub struct Parameters {
     pub method: Method,
     /// At most so many bones are sought in the source by [`Method::Bones`].
     pub bones: usize,
+    /// How the source is bent into the target by [`Method::Gradients`] and [`Method::Posed`].
+    pub fitting: Fitting,
+    /// By these two a face that ends off by so much (the Frobenius norm of the difference of maps) from what is asked of it
+    /// counts half; 0: all count in full, as in the paper.
+    pub doubt: f64,
+    /// Vertices of the target that, by these two, go exactly as far as the source does where it corresponds, but for the
+    /// size: feet that shall stand.
+    pub pinned: Vec<u32>,
 }
 
 impl Default for Parameters {
     fn default() -> Self {
-        Self { method: Method::default(), bones: 32 }
+        Self { method: Method::default(), bones: 32, fitting: Fitting::default(), doubt: 0.2, pinned: Vec::new() }
     }
 }
 
@@ -31,4 +40,17 @@ pub enum Method {
     Direct,
     /// The affine motion of each key point about itself, and its displacement scaled.
     Relative,
+    /// What each face of the source does is asked of the target's faces (Sumner & Popović 2004). By a
+    /// [`Mover`](super::gradients::Mover); a [`Prepared`](super::Prepared) takes it for [`Method::Bones`].
+    Gradients,
+    /// The same, after the target was turned part by part into the posture of the source's reference (Lee, Wang & Chen
+    /// 2006, §5). By a [`Mover`](super::gradients::Mover), too.
+    Posed,
+}
+
+impl Method {
+    /// Whether it gives positions of vertices, by a [`Mover`](super::gradients::Mover), and no skin.
+    pub fn moves_vertices(self) -> bool {
+        matches!(self, Self::Gradients | Self::Posed)
+    }
 }

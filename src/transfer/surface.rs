@@ -2,6 +2,7 @@
 
 use super::kd_tree::KdTree;
 use crate::mesh::ball::unit_ball;
+pub use crate::mesh::face::nearest_in_triangle;
 use crate::mesh::{face, weld};
 use crate::sequence::Sequence;
 use glam::DVec3;
@@ -84,6 +85,13 @@ impl Surface {
         surface.link();
         surface.place_loose(sequence.reference());
         surface
+    }
+
+    /// The same surface, bent to other positions (#N).
+    pub fn bent(&self, positions: Vec<DVec3>) -> Self {
+        let mut bent = Self { normals: self.normals_of(&positions), positions, ..self.clone() };
+        bent.mass = bent.shares();
+        bent
     }
 
     /// Whether there is no place: no face.
@@ -175,69 +183,4 @@ fn lists(count: usize, mut pairs: Vec<(u32, u32)>) -> (Vec<u32>, Vec<u32>) {
         start[i + 1] += start[i];
     }
     (start, pairs.into_iter().map(|(_, b)| b).collect())
-}
-
-/// The shares of the corners at the point of a triangle nearest to `p`. (Christer Ericson, Real-Time Collision
-/// Detection, 2005, §5.1.5.)
-pub fn nearest_in_triangle(p: DVec3, [a, b, c]: [DVec3; 3]) -> [f64; 3] {
-    let (ab, ac, ap) = (b - a, c - a, p - a);
-    let (d1, d2) = (ab.dot(ap), ac.dot(ap));
-    if d1 <= 0.0 && d2 <= 0.0 {
-        return [1.0, 0.0, 0.0];
-    }
-    let bp = p - b;
-    let (d3, d4) = (ab.dot(bp), ac.dot(bp));
-    if d3 >= 0.0 && d4 <= d3 {
-        return [0.0, 1.0, 0.0];
-    }
-    let vc = d1 * d4 - d3 * d2;
-    if vc <= 0.0 && d1 >= 0.0 && d3 <= 0.0 && d1 - d3 > 0.0 {
-        let t = d1 / (d1 - d3);
-        return [1.0 - t, t, 0.0];
-    }
-    let cp = p - c;
-    let (d5, d6) = (ab.dot(cp), ac.dot(cp));
-    if d6 >= 0.0 && d5 <= d6 {
-        return [0.0, 0.0, 1.0];
-    }
-    let vb = d5 * d2 - d1 * d6;
-    if vb <= 0.0 && d2 >= 0.0 && d6 <= 0.0 && d2 - d6 > 0.0 {
-        let t = d2 / (d2 - d6);
-        return [1.0 - t, 0.0, t];
-    }
-    let va = d3 * d6 - d5 * d4;
-    let (along, back) = (d4 - d3, d5 - d6);
-    if va <= 0.0 && along >= 0.0 && back >= 0.0 && along + back > 0.0 {
-        let t = along / (along + back);
-        return [0.0, 1.0 - t, t];
-    }
-    let sum = va + vb + vc;
-    if sum > 0.0 && sum.is_finite() { [va / sum, vb / sum, vc / sum] } else { [1.0, 0.0, 0.0] }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn the_nearest_point_of_a_triangle_is_nearer_than_others() {
-        let corners = [DVec3::ZERO, DVec3::new(2.0, 0.1, 0.0), DVec3::new(0.3, 1.5, 0.4)];
-        let at = |s: [f64; 3]| corners[0] * s[0] + corners[1] * s[1] + corners[2] * s[2];
-        for i in 0..7 {
-            for j in 0..7 {
-                let p = DVec3::new(f64::from(i) - 3.0, f64::from(j) - 3.0, 0.7);
-                let shares = nearest_in_triangle(p, corners);
-                assert!((shares.iter().sum::<f64>() - 1.0).abs() < 1e-12 && shares.iter().all(|&s| s >= 0.0));
-                let found = at(shares).distance(p);
-                for k in 0..=20 {
-                    for l in 0..=(20 - k) {
-                        let (s, t) = (f64::from(k) / 20.0, f64::from(l) / 20.0);
-                        assert!(found <= at([1.0 - s - t, s, t]).distance(p) + 1e-12);
-                    }
-                }
-            }
-        }
-        let flat = nearest_in_triangle(DVec3::ONE, [DVec3::ZERO; 3]);
-        assert!(flat.iter().all(|s| s.is_finite()));
-    }
 }

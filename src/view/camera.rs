@@ -130,6 +130,17 @@ impl Camera {
         lens * view
     }
 
+    /// Where a point of a scene with some `radius` is on the window (x, y), and its depth, which is not positive behind
+    /// the eye.
+    pub fn place(&self, window: &Window, radius: f32, point: Vec3) -> [f32; 3] {
+        let [right, up, back] = self.axes();
+        let from = point - self.eye();
+        let depth = -from.dot(back);
+        let scale = window.focal() / depth.max(1e-6 * radius);
+        let (cx, cy) = window.centre();
+        [cx + from.dot(right) * scale, cy - from.dot(up) * scale, depth]
+    }
+
     /// The line of sight through a point of the window.
     pub fn ray(&self, window: &Window, x: f32, y: f32) -> Ray {
         let [right, up, back] = self.axes();

@@ -2,6 +2,7 @@
 
 pub mod board;
 pub mod camera;
+pub mod closer;
 pub mod colormap;
 pub mod colour;
 pub mod flow;

@@ -112,14 +112,11 @@ impl Pin {
 
     /// Where its head is on the window, for a figure with `radius`.
     pub fn spot(&self, point: Vec3, camera: &Camera, window: &Window, radius: f32) -> Spot {
-        let [right, up, back] = camera.axes();
-        let from = point - camera.eye();
-        let depth = -from.dot(back);
+        let [x, y, depth] = camera.place(window, radius, point);
         let scale = window.focal() / depth.max(1e-6 * radius);
-        let (cx, cy) = window.centre();
         let larger = if self.selected { SELECTED } else { 1.0 } * if self.hovered { HOVERED } else { 1.0 };
         let head = RADIUS.clamp(LIMITS[0] * radius * scale, (LIMITS[1] * radius * scale).max(1.0)) * larger;
-        Spot { point, x: cx + from.dot(right) * scale, y: cy - from.dot(up) * scale, depth, radius: head }
+        Spot { point, x, y, depth, radius: head }
     }
 
     /// The numbers for the shaders: point, radius in device pixels, linear colour, state, then how much of the head is

@@ -2,6 +2,7 @@
 
 use super::board::Board;
 use super::camera::{Ball, Camera, Window};
+use super::closer;
 use super::colormap::ColourMap;
 use super::colour::srgb_to_linear;
 use super::frame::{Frame, Theme, light_map};
@@ -307,6 +308,18 @@ impl Stage {
         }
     }
 
+    /// Where vertices are at the moment that is shown; `None` for one that does not exist.
+    pub fn places(&self, vertices: &[u32]) -> Vec<Option<Vec3>> {
+        let moment = self.moment();
+        let maps = self.motion.maps(moment);
+        vertices.iter().map(|&v| self.motion.vertex(v, moment, &maps)).collect()
+    }
+
+    /// Where a point is on the window, and its depth.
+    pub fn project(&self, point: Vec3) -> [f32; 3] {
+        self.camera.place(&self.window, self.ball().radius, point)
+    }
+
     /// The moment that is shown.
     pub fn moment(&self) -> Moment {
         self.motion.at(self.time, self.loops)
@@ -357,6 +370,18 @@ impl Stage {
         let centre = self.whole().centre();
         self.camera.frame(&self.window, self.motion.sample(reference).into_iter(), centre);
         self.redraw();
+    }
+
+    /// Moves the camera to where most of these faces are seen: see [`closer::look_at`]. Nothing happens where there is
+    /// none of them.
+    pub fn frame_faces(&mut self, faces: &[u32]) {
+        self.positions(self.moment());
+        let scene = self.whole().ball();
+        let (all, positions) = (self.motion.faces(), &self.positions);
+        if let Some(camera) = closer::look_at(&self.camera, &self.window, scene, faces, all, positions) {
+            self.camera = camera;
+            self.redraw();
+        }
     }
 
     /// The camera as six numbers that do not depend on where the figure stands and how large it is: where the camera

@@ -248,6 +248,19 @@ impl Viewport {
         Some(Float32Array::from(&[hit.face as f32, a, b, c, p.x, p.y, p.z][..]))
     }
 
+    /// Where some vertices are in the pose that is shown: three coordinates each, 0 for one that does not exist.
+    pub fn vertices(&self, numbers: &[u32]) -> Float32Array {
+        let found: Vec<f32> =
+            self.stage.places(numbers).iter().flat_map(|p| p.unwrap_or_default().to_array()).collect();
+        Float32Array::from(&found[..])
+    }
+
+    /// Where points of the world are on the canvas: x, y and depth each; what is behind the camera has no positive depth.
+    pub fn project(&self, points: &[f32]) -> Float32Array {
+        let seen: Vec<f32> = points.as_chunks().0.iter().flat_map(|&p| self.stage.project(p.into())).collect();
+        Float32Array::from(&seen[..])
+    }
+
     /// Puts pins on the surface in place of those there are, eight numbers each: see [`pins::read`].
     pub fn set_pins(&mut self, numbers: &[f32]) -> Result<(), JsValue> {
         self.stage.set_pins(pins::read(numbers).map_err(sentence)?);
@@ -311,6 +324,12 @@ impl Viewport {
     /// Fits the whole motion into what panels leave free, looking in the same direction.
     pub fn frame(&mut self) {
         self.stage.frame_all();
+        self.framed = true;
+    }
+
+    /// Turns and comes nearer so that as many of these faces as can be are seen, with room around them.
+    pub fn frame_faces(&mut self, faces: &[u32]) {
+        self.stage.frame_faces(faces);
         self.framed = true;
     }
 

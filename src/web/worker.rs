@@ -11,9 +11,10 @@ mod points;
 mod sequences;
 mod values;
 
-use crate::export::glb;
+use crate::export::{glb, rigid};
 use crate::import::{self, Imported, Options};
 use crate::keypoints;
+use crate::memory::{self, Step};
 use crate::segmentation::{Parameters, Segmentation, Segmenter, Steps};
 use crate::sequence::Sequence;
 use crate::transfer::propose::Proposer;
@@ -118,6 +119,11 @@ impl Engine {
         let result = self.segmented(&parameters, progress)?;
         let reply = describe_parts(&result)?;
         describe_steps(&reply, &result.steps)?;
+        if let Some((_, tree)) = &self.tree {
+            let (faces, weights): (Vec<_>, Vec<_>) = tree.dual_edges().unzip();
+            put(&reply, "dual", &Uint32Array::from(faces.as_flattened()))?;
+            put(&reply, "dual_weights", &single(&weights))?;
+        }
         put(&reply, "warnings", &plain(&result.warnings)?)?;
         put(&reply, "seconds", &plain(&result.seconds)?)?;
         Ok(reply)
@@ -136,6 +142,17 @@ impl Engine {
         Ok(Uint8Array::from(glb::parts(self.open_sequence()?, labels, &colours).as_slice()).into())
     }
 
+    /// What is open as a skin with a joint for each of the parts `labels` (#F): `{bytes, error, rms}` as
+    /// [`Engine::export_transfer`].
+    pub fn export_rigid(&self, labels: &[u32]) -> Reply {
+        let made = rigid::rigid(self.open_sequence()?, labels).map_err(sentence)?;
+        let reply: JsValue = Object::new().into();
+        put(&reply, "bytes", &Uint8Array::from(made.bytes.as_slice()))?;
+        put(&reply, "error", &made.largest.into())?;
+        put(&reply, "rms", &made.rms.into())?;
+        Ok(reply)
+    }
+
     /// Cuts the merge tree, which is made first if there is none for these parameters.
     fn segmented(&mut self, parameters: &Parameters, progress: &Function) -> Result<Segmentation, JsValue> {
         let basis = Parameters { parts: None, ..parameters.clone() };
@@ -149,6 +166,7 @@ impl Engine {
     }
 
     fn grow(&self, parameters: &Parameters, progress: &Function) -> Result<Segmenter, JsValue> {
+        self.room_for(Step::Segmentation, self.open_sequence()?)?;
         Segmenter::new(self.open_sequence()?, parameters, &mut watcher(progress)).map_err(sentence)
     }
 
@@ -161,6 +179,11 @@ impl Engine {
         let reply = describe(&sequence, &imported.clips, imported.clip, &imported.warnings)?;
         self.replace(sequence);
         Ok(reply)
+    }
+
+    /// Refuses a step for which there is not memory enough, beside what is open.
+    fn room_for(&self, step: Step, of: &Sequence) -> Result<(), JsValue> {
+        memory::check(step, of, self.sequence.iter().chain(&self.target), memory::LIMIT).map_err(sentence)
     }
 
     fn replace(&mut self, sequence: Sequence) {
@@ -183,6 +206,7 @@ fn describe_parts(result: &Segmentation) -> Reply {
     let reply: JsValue = Object::new().into();
     put(&reply, "labels", &Uint32Array::from(result.labels.as_slice()))?;
     put(&reply, "unsmoothed", &Uint32Array::from(result.steps.unsmoothed.as_slice()))?;
+    put(&reply, "band", &Uint8Array::from(result.steps.band.as_slice()))?;
     put(&reply, "parts", &plain(&result.parts)?)?;
     put(&reply, "rigid_residual", &result.rigid_residual.into())?;
     put(&reply, "residual_before_smoothing", &result.residual_before_smoothing.into())?;

@@ -1,6 +1,7 @@
 //! A body: bones, the limbs around them, and how they move. What a creature's own file describes.
 
 use super::limb::{Limb, Station};
+use super::pieces::Piece;
 use super::skeleton::{Rigid, Skeleton};
 use glam::{DQuat, DVec3};
 
@@ -11,31 +12,56 @@ pub struct Body {
     pub skeleton: Skeleton,
     /// The limbs in the order in which they are joined.
     pub limbs: Vec<Limb>,
+    /// Rigid pieces that stand in for the limbs, if there are any.
+    pub pieces: Vec<Piece>,
     /// Whether it stands on flat soles at y = 0.
     pub grounded: bool,
     /// Thickness of its thinnest limbs.
     pub thinnest: f64,
     /// Half the length of the stretch around a joint in which two bones share the skin, in radii of the limb.
     pub softness: f64,
-    /// How it moves.
-    pub motion: Motion,
-}
-
-/// The poses of a body.
-#[derive(Clone, Copy, Debug)]
-pub struct Motion {
-    /// Seconds in one loop.
-    pub period: f64,
     /// The reference pose.
     pub stance: fn(&Skeleton) -> Vec<Rigid>,
+    /// How it moves; the first is what it does unless told otherwise.
+    pub motions: Vec<Motion>,
+}
+
+/// A loop of poses.
+#[derive(Clone, Copy, Debug)]
+pub struct Motion {
+    /// What people call it.
+    pub name: &'static str,
+    /// Seconds in one loop.
+    pub period: f64,
     /// The pose at a phase of the loop (0 to 1).
     pub gait: fn(&Skeleton, f64) -> Vec<Rigid>,
+    /// Whether the lowest point is put on the ground in every pose; else the poses themselves say how high it is.
+    pub grounded: bool,
+}
+
+/// A motion that stays on the ground.
+pub const fn motion(name: &'static str, period: f64, gait: fn(&Skeleton, f64) -> Vec<Rigid>) -> Motion {
+    Motion { name, period, gait, grounded: true }
+}
+
+/// A motion that may leave the ground.
+pub const fn airborne(name: &'static str, period: f64, gait: fn(&Skeleton, f64) -> Vec<Rigid>) -> Motion {
+    Motion { name, period, gait, grounded: false }
 }
 
 impl Body {
     /// A body without bones.
-    pub fn new(thinnest: f64, motion: Motion) -> Self {
-        Self { skeleton: Skeleton::default(), limbs: Vec::new(), grounded: true, thinnest, softness: 0.9, motion }
+    pub fn new(thinnest: f64, motions: &[Motion]) -> Self {
+        Self {
+            skeleton: Skeleton::default(),
+            limbs: Vec::new(),
+            pieces: Vec::new(),
+            grounded: true,
+            thinnest,
+            softness: 0.9,
+            stance: as_meshed,
+            motions: motions.to_vec(),
+        }
     }
 
     /// Adds a bone from `joint` to `end`; `parent` is the name of the bone that carries it.
@@ -74,6 +100,20 @@ impl Body {
         let left = Limb::new(left, blend, pair, direction.normalize(), stations.to_vec());
         let right = left.mirrored(self.numbers(bones, "right"));
         self.limbs.extend([left, right]);
+    }
+
+    /// Makes everything so many times larger, soles and motions excepted: those are given for the final size.
+    pub fn enlarge(&mut self, scale: f64) {
+        for bone in &mut self.skeleton.bones {
+            bone.joint *= scale;
+            bone.end *= scale;
+        }
+        for limb in &mut self.limbs {
+            let larger = |s: &Station| Station { at: scale * s.at, radius: scale * s.radius, flat: s.flat };
+            let stations = limb.stations.iter().map(larger).collect();
+            *limb = Limb::new(limb.bones.clone(), scale * limb.blend, limb.pair, limb.direction, stations);
+        }
+        self.thinnest *= scale;
     }
 
     fn numbers(&self, bones: &[&str], side: &str) -> Vec<u32> {

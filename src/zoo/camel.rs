@@ -1,9 +1,9 @@
 //! The dromedary: 1.85 tall at the shoulder, long-legged and long-necked, facing +z.
 
-use super::body::{Body, Motion, as_meshed};
+use super::body::{Body, airborne, motion};
 use super::gait::{Curve, Step};
 use super::limb::{Station, station};
-use super::quadruped::{Joints, Walk, mid, quadruped_bones};
+use super::quadruped::{Joints, Walk, collapse_folded, galloping, mid, quadruped_bones};
 use super::skeleton::{Rigid, Skeleton};
 use glam::DVec3;
 
@@ -49,7 +49,10 @@ const HIND: &[Station] = &[
 
 /// The camel's bones, limbs and motion.
 pub fn camel() -> Body {
-    let mut body = Body::new(0.034, Motion { period: 1.5, stance: as_meshed, gait });
+    let mut body = Body::new(
+        0.034,
+        &[motion("walk", 1.5, gait), airborne("gallop", 0.66, gallop), motion("collapse", 3.2, collapse_folded)],
+    );
     quadruped_bones(&mut body, &JOINTS);
     body.limb(
         &["trunk"],
@@ -76,8 +79,8 @@ pub fn camel() -> Body {
         ],
     );
     body.limb(&["trunk"], 0.08, &[mid(1.02, 0.28, 0.07, 1.0), mid(1.02, 0.40, 0.07, 1.0)]);
-    body.limbs(&["* upper arm", "* forearm", "* fore cannon", "* fore hoof"], 0.10, FORE);
-    body.limbs(&["* thigh", "* gaskin", "* hind cannon", "* hind hoof"], 0.10, HIND);
+    body.limbs(&["* upper arm", "* forearm", "* fore cannon", "* fore foot"], 0.10, FORE);
+    body.limbs(&["* thigh", "* gaskin", "* hind cannon", "* hind foot"], 0.10, HIND);
     body.limbs(
         &["* gaskin", "* hind cannon"],
         0.05,
@@ -179,12 +182,22 @@ const PACE: Walk = Walk {
         foot: Curve(&[(0.0, -5.0), (0.06, 0.0), (0.46, 0.0), (0.62, 26.0), (0.72, 42.0), (0.88, 10.0), (0.96, -8.0)]),
     },
     drop: 0.03,
+    beats: 2.0,
+    rise: 0.008,
+    pitch: 0.8,
+    roll: 1.6,
     nod: 1.2,
     tail: 1.0,
-    fore_sole: [0.41, 0.59],
-    hind_sole: [-0.61, -0.44],
+    fore_sole: [-0.02, 0.16],
+    hind_sole: [-0.01, 0.16],
 };
 
 fn gait(skeleton: &Skeleton, phase: f64) -> Vec<Rigid> {
     PACE.pose(skeleton, phase)
+}
+
+const GALLOP: Walk = galloping(1.0, 0.24, 0.05, [-0.02, 0.16], [-0.01, 0.16]);
+
+fn gallop(skeleton: &Skeleton, phase: f64) -> Vec<Rigid> {
+    GALLOP.pose(skeleton, phase)
 }

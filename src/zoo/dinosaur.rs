@@ -2,7 +2,7 @@
 //!
 //! The long tail balances the heavy head across the hips; the arms are small, the legs strong, and it walks on its toes.
 
-use super::body::{Body, Motion, Turns, as_meshed};
+use super::body::{Body, Turns, airborne, motion};
 use super::gait::{Curve, Leg, Step, pitch, roll, wave, yaw};
 use super::limb::{Station, station};
 use super::quadruped::mid;
@@ -36,7 +36,7 @@ const LEG_STATIONS: &[Station] = &[
 
 /// The dinosaur's bones, limbs and motion.
 pub fn dinosaur() -> Body {
-    let mut body = Body::new(0.036, Motion { period: 1.3, stance: as_meshed, gait });
+    let mut body = Body::new(0.036, &[motion("walk", 1.3, gait), airborne("run", 0.7, run)]);
     bones(&mut body);
     // The trunk, deepest at the belly, and the curve of the neck.
     body.limb(
@@ -167,12 +167,29 @@ const STEP: Step = Step {
     foot: Curve(&[(0.0, -10.0), (0.08, 0.0), (0.40, 0.0), (0.52, 24.0), (0.62, 52.0), (0.74, 58.0), (0.88, 6.0)]),
 };
 
+const RUN: Step = Step {
+    duty: 0.40,
+    stride: 0.95,
+    ahead: 0.02,
+    lift: 0.22,
+    bend: Curve(&[(0.0, -6.0), (0.12, -14.0), (0.34, 8.0), (0.45, 2.0), (0.66, -42.0), (0.90, -12.0)]),
+    foot: Curve(&[(0.0, -8.0), (0.06, 0.0), (0.24, 0.0), (0.36, 34.0), (0.46, 70.0), (0.64, 74.0), (0.86, 8.0)]),
+};
+
 fn gait(skeleton: &Skeleton, phase: f64) -> Vec<Rigid> {
+    moving(skeleton, phase, &STEP, -0.045, 0.018)
+}
+
+fn run(skeleton: &Skeleton, phase: f64) -> Vec<Rigid> {
+    moving(skeleton, phase, &RUN, -0.055, 0.045)
+}
+
+fn moving(skeleton: &Skeleton, phase: f64, step: &Step, height: f64, bounce: f64) -> Vec<Rigid> {
     let mut turns = Turns::new(skeleton);
     // The left foot meets the ground at phase 0; the body is lowest a little later, twice a loop.
     let stride = wave(phase + 0.25);
     let beat = 2.0 * phase;
-    let shift = DVec3::new(0.03 * wave(phase + 0.02), -0.045 - 0.018 * wave(beat + 0.19), 0.0);
+    let shift = skeleton.stride * DVec3::new(0.03 * wave(phase + 0.02), height - bounce * wave(beat + 0.19), 0.0);
     turns.set("pelvis", yaw(-5.0 * stride) * roll(3.0 * wave(phase)) * pitch(1.2 * wave(beat)));
     turns.set("chest", yaw(8.0 * stride) * roll(-3.5 * wave(phase)) * pitch(-1.5 * wave(beat)));
     // The head is thrust forwards with every step and held level.
@@ -195,8 +212,8 @@ fn gait(skeleton: &Skeleton, phase: f64) -> Vec<Rigid> {
         if let (Some(upper), Some(lower), middle, Some(foot)) =
             (bone("thigh"), bone("shank"), bone("metatarsus"), bone("toes"))
         {
-            let leg = Leg { upper, lower, middle, foot, sole: [-0.05, 0.29] };
-            STEP.place(&leg, phase - own, skeleton, shift, &mut turns.turns);
+            let leg = Leg { upper, lower, middle, foot, sole: [-0.07, 0.27] };
+            step.place(&leg, phase - own, skeleton, shift, &mut turns.turns);
         }
     }
     turns.pose(shift)

@@ -96,7 +96,7 @@ pub struct Leg {
     pub middle: Option<u32>,
     /// Foot or hoof.
     pub foot: u32,
-    /// The places of the sole about which the foot tips: z of its back and of its front end.
+    /// The places of the sole about which the foot tips: how far its back and its front end are before the joint (z).
     pub sole: [f64; 2],
 }
 
@@ -133,8 +133,9 @@ impl Step {
 
         let foot = self.foot.at(phase).to_radians();
         let (up, forward) = self.sole(phase);
+        let (up, forward) = (skeleton.stride * up, skeleton.stride * forward);
         // The foot tips about its toe when the heel rises, about its heel when the toe rises.
-        let pivot = DVec2::new(0.0, leg.sole[usize::from(foot > 0.0)]);
+        let pivot = DVec2::new(0.0, ankle.y + leg.sole[usize::from(foot > 0.0)]);
         let target = pivot + DVec2::new(up, forward) + turned(foot, ankle - pivot);
 
         let bend = self.bend.at(phase).to_radians();

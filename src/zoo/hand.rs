@@ -3,7 +3,7 @@
 //! It lies on its edge and points to +z, the thumb up and the palm to its right (−x). One after the other the fingers
 //! curl into the palm and open again.
 
-use super::body::{Body, Motion, Turns};
+use super::body::{Body, Turns, motion};
 use super::gait::{Curve, pitch, wave, yaw};
 use super::limb::{Station, station};
 use super::skeleton::{Rigid, Skeleton};
@@ -77,7 +77,8 @@ const GRASP: Curve = Curve(&[(0.0, 0.0), (0.26, 1.0), (0.44, 1.0), (0.70, 0.0)])
 
 /// The hand's bones, limbs and motion.
 pub fn hand() -> Body {
-    let mut body = Body::new(0.05, Motion { period: 2.4, stance, gait });
+    let mut body = Body::new(0.05, &[motion("grasp", 2.4, gait), motion("wave", 1.6, greet)]);
+    body.stance = stance;
     body.grounded = false;
     body.bone("forearm", None, [0.0, 0.21, -0.85], [0.0, 0.30, 0.0]);
     body.bone("palm", Some("forearm"), [0.0, 0.305, 0.0], [0.0, 0.33, 0.45]);
@@ -204,5 +205,14 @@ fn gait(skeleton: &Skeleton, phase: f64) -> Vec<Rigid> {
     // The wrist gives way as the fingers close, and lifts the hand a little.
     turns.set("forearm", yaw(2.0 * wave(phase - 0.1)));
     turns.set("palm", yaw(9.0 * wave(phase - 0.15)) * pitch(-3.0 - 5.0 * wave(phase - 0.2)));
+    turns.pose(DVec3::ZERO)
+}
+
+/// Waves: the wrist swings, the fingers follow.
+fn greet(skeleton: &Skeleton, phase: f64) -> Vec<Rigid> {
+    let mut turns = Turns::new(skeleton);
+    bend(&mut turns, |begins| 0.10 + 0.12 * wave(phase - 0.6 * begins));
+    turns.set("forearm", yaw(5.0 * wave(phase + 0.2)) * pitch(4.0 * wave(phase + 0.1)));
+    turns.set("palm", pitch(24.0 * wave(phase)) * yaw(8.0 * wave(phase - 0.1)));
     turns.pose(DVec3::ZERO)
 }

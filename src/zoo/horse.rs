@@ -1,9 +1,9 @@
 //! The horse: 1.6 tall at the withers, as long as it is tall, facing +z.
 
-use super::body::{Body, Motion, as_meshed};
+use super::body::{Body, airborne, motion};
 use super::gait::{Curve, Step};
 use super::limb::{Station, station};
-use super::quadruped::{Joints, Walk, mid, quadruped_bones};
+use super::quadruped::{Joints, Walk, collapse_folded, galloping, mid, quadruped_bones};
 use super::skeleton::{Rigid, Skeleton};
 use glam::DVec3;
 
@@ -49,7 +49,10 @@ const HIND: &[Station] = &[
 
 /// The horse's bones, limbs and motion.
 pub fn horse() -> Body {
-    let mut body = Body::new(0.030, Motion { period: 1.15, stance: as_meshed, gait });
+    let mut body = Body::new(
+        0.030,
+        &[motion("walk", 1.15, gait), airborne("gallop", 0.52, gallop), motion("collapse", 3.2, collapse_folded)],
+    );
     quadruped_bones(&mut body, &JOINTS);
     body.limb(
         &["trunk"],
@@ -70,8 +73,8 @@ pub fn horse() -> Body {
         0.16,
         &[mid(1.40, 0.02, 0.08, 0.6), mid(1.455, 0.26, 0.115, 0.5), mid(1.44, 0.46, 0.14, 0.6)],
     );
-    body.limbs(&["* upper arm", "* forearm", "* fore cannon", "* fore hoof"], 0.10, FORE);
-    body.limbs(&["* thigh", "* gaskin", "* hind cannon", "* hind hoof"], 0.10, HIND);
+    body.limbs(&["* upper arm", "* forearm", "* fore cannon", "* fore foot"], 0.10, FORE);
+    body.limbs(&["* thigh", "* gaskin", "* hind cannon", "* hind foot"], 0.10, HIND);
     // Point of the hock, and the tendon above it.
     body.limbs(
         &["* gaskin", "* hind cannon"],
@@ -190,12 +193,22 @@ const WALK: Walk = Walk {
         foot: Curve(&[(0.0, -4.0), (0.06, 0.0), (0.46, 0.0), (0.62, 28.0), (0.72, 46.0), (0.88, 10.0), (0.96, -6.0)]),
     },
     drop: 0.022,
+    beats: 2.0,
+    rise: 0.008,
+    pitch: 0.8,
+    roll: 1.6,
     nod: 1.0,
     tail: 1.0,
-    fore_sole: [0.48, 0.60],
-    hind_sole: [-0.65, -0.53],
+    fore_sole: [0.015, 0.135],
+    hind_sole: [0.02, 0.14],
 };
 
 fn gait(skeleton: &Skeleton, phase: f64) -> Vec<Rigid> {
     WALK.pose(skeleton, phase)
+}
+
+const GALLOP: Walk = galloping(0.95, 0.24, 0.05, [0.015, 0.135], [0.02, 0.14]);
+
+fn gallop(skeleton: &Skeleton, phase: f64) -> Vec<Rigid> {
+    GALLOP.pose(skeleton, phase)
 }

@@ -55,16 +55,16 @@ const QUADRUPED: &[Place] = &[
     side("right elbow", "right forearm", 0.1, BACK),
     side("left carpus", "left fore cannon", 0.05, FRONT),
     side("right carpus", "right fore cannon", 0.05, FRONT),
-    side("left fore hoof", "left fore hoof", 0.6, FRONT),
-    side("right fore hoof", "right fore hoof", 0.6, FRONT),
+    side("left fore foot", "left fore foot", 0.6, FRONT),
+    side("right fore foot", "right fore foot", 0.6, FRONT),
     side("left hip", "left thigh", 0.2, LEFT),
     side("right hip", "right thigh", 0.2, LEFT),
     side("left stifle", "left gaskin", 0.05, FRONT),
     side("right stifle", "right gaskin", 0.05, FRONT),
     side("left hock", "left hind cannon", 0.05, BACK),
     side("right hock", "right hind cannon", 0.05, BACK),
-    side("left hind hoof", "left hind hoof", 0.6, FRONT),
-    side("right hind hoof", "right hind hoof", 0.6, FRONT),
+    side("left hind foot", "left hind foot", 0.6, FRONT),
+    side("right hind foot", "right hind foot", 0.6, FRONT),
 ];
 
 /// Of everybody with two arms and two legs.
@@ -238,7 +238,7 @@ mod tests {
     use std::collections::BTreeSet;
 
     fn creature(name: &str, faces: usize) -> Creature {
-        make(&Recipe { name: name.into(), faces, poses: 1, exact: false }).unwrap()
+        make(&Recipe { name: name.into(), faces, poses: 1, exact: false, ..Recipe::default() }).unwrap()
     }
 
     #[test]

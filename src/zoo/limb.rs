@@ -9,6 +9,9 @@ use glam::DVec3;
 /// Cones between two stations.
 const CUTS: usize = 4;
 
+/// From the first of these stretches on, cross-sections count as blades; from the second on, wholly.
+const BLADE: [f64; 2] = [1.5, 2.0];
+
 /// The thickness of a limb at one place.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Station {
@@ -73,7 +76,19 @@ impl Cone {
         if steepness < 1e-12 {
             return Near { distance: -thin, gradient: self.direction, arc, radius: thin };
         }
-        Near { distance: (length - radius) * length / steepness, gradient: steep / steepness, arc, radius: thin }
+        let near =
+            Near { distance: (length - radius) * length / steepness, gradient: steep / steepness, arc, radius: thin };
+        // Far from a thin blade the first order says too little; what lies between is mixed.
+        let blade = ((stretch - BLADE[0]) / (BLADE[1] - BLADE[0])).clamp(0.0, 1.0);
+        if blade == 0.0 {
+            return near;
+        }
+        let (distance, gradient) = from_blade(q, self.direction, radius, thin);
+        Near {
+            distance: near.distance + blade * (distance - near.distance),
+            gradient: near.gradient.lerp(gradient, blade),
+            ..near
+        }
     }
 
     /// A ball that holds the cone: centre and radius.
@@ -87,6 +102,29 @@ impl Cone {
         let limit = distance + self.reach;
         limit < 0.0 || p.distance_squared(self.centre) > limit * limit
     }
+}
+
+/// Signed distance of `q` from an ellipse of half axes `wide` and, along `direction`, `thin`, and its gradient (the
+/// iteration of A. Nurnberg, *Robustly finding the distance to an ellipse*, 2017).
+fn from_blade(q: DVec3, direction: DVec3, wide: f64, thin: f64) -> (f64, DVec3) {
+    let up = q.dot(direction);
+    let aside = q - up * direction;
+    let (px, py) = (aside.length(), up.abs());
+    let (mut tx, mut ty) = (std::f64::consts::FRAC_1_SQRT_2, std::f64::consts::FRAC_1_SQRT_2);
+    for _ in 0..4 {
+        let (ex, ey) =
+            ((wide * wide - thin * thin) * tx.powi(3) / wide, (thin * thin - wide * wide) * ty.powi(3) / thin);
+        let r = (wide * tx - ex).hypot(thin * ty - ey);
+        let away = (px - ex).hypot(py - ey).max(1e-12);
+        let x = (((px - ex) * r / away + ex) / wide).clamp(0.0, 1.0);
+        let y = (((py - ey) * r / away + ey) / thin).clamp(0.0, 1.0);
+        let length = x.hypot(y).max(1e-12);
+        (tx, ty) = (x / length, y / length);
+    }
+    let inside = (px / wide).powi(2) + (py / thin).powi(2) < 1.0;
+    let distance = (px - wide * tx).hypot(py - thin * ty);
+    let normal = aside.normalize_or_zero() * (tx / wide) + direction * (up.signum() * ty / thin);
+    (if inside { -distance } else { distance }, normal.normalize_or(direction))
 }
 
 /// A smooth tube that follows a chain of bones.

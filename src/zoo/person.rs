@@ -4,14 +4,14 @@
 //! then lowers the arms or raises them. Both variants are one mesh, vertex by vertex, so the true answer of every
 //! transfer between them is known.
 
-use super::body::{Body, Motion, Turns};
+use super::body::{Body, Motion, Turns, airborne, motion};
 use super::gait::{Curve, Leg, Step, pitch, roll, wave, yaw};
 use super::limb::{Station, station};
 use super::skeleton::{Rigid, Skeleton};
 use glam::{DQuat, DVec3};
 
 /// How far the arms hang below the horizontal in the mesh, in degrees.
-const MESHED: f64 = 45.0;
+pub const MESHED: f64 = 45.0;
 /// The same with the arms down and with the arms out.
 const DOWN: f64 = 80.0;
 const OUT: f64 = 4.0;
@@ -49,13 +49,21 @@ pub fn person_arms_out() -> Body {
 }
 
 /// A point so far along the left arm as it is meshed, with an offset forwards.
-fn arm(along: f64, forward: f64) -> [f64; 3] {
+pub fn arm(along: f64, forward: f64) -> [f64; 3] {
     let (sine, cosine) = MESHED.to_radians().sin_cos();
     [SHOULDER[0] + along * cosine, SHOULDER[1] - along * sine, SHOULDER[2] + forward]
 }
 
+const MOTIONS: [Motion; 4] = [
+    motion("walk", 1.1, gait),
+    airborne("run", 0.68, run),
+    motion("wave", 1.8, greet),
+    motion("collapse", 3.2, collapse),
+];
+
 fn build(stance: fn(&Skeleton) -> Vec<Rigid>) -> Body {
-    let mut body = Body::new(0.022, Motion { period: 1.1, stance, gait });
+    let mut body = Body::new(0.022, &MOTIONS);
+    body.stance = stance;
     body.bone("pelvis", None, [0.0, 0.96, 0.0], [0.0, 1.08, 0.0]);
     body.bone("chest", Some("pelvis"), [0.0, 1.09, 0.0], [0.0, 1.44, -0.01]);
     body.bone("head", Some("chest"), [0.0, 1.48, -0.012], [0.0, 1.75, 0.02]);
@@ -203,30 +211,141 @@ const STEP: Step = Step {
     ]),
 };
 
+/// How arms and body go with the steps.
+#[derive(Clone, Copy)]
+struct Manner {
+    step: Step,
+    /// Lowest point of the body and how far it bounces.
+    drop: f64,
+    bounce: f64,
+    /// When it is lowest: 0 is when a foot lands.
+    lowest: f64,
+    /// How far chest and head lean ahead.
+    lean: f64,
+    /// How far the arms swing, and how far the elbows are bent in the middle.
+    swing: f64,
+    elbow: f64,
+    /// How far the pelvis turns.
+    twist: f64,
+}
+
+const WALK: Manner =
+    Manner { step: STEP, drop: 0.019, bounce: 0.015, lowest: 0.19, lean: 2.5, swing: 26.0, elbow: -22.0, twist: 6.0 };
+
+const RUN: Manner = Manner {
+    step: Step {
+        duty: 0.36,
+        stride: 0.66,
+        ahead: -0.02,
+        lift: 0.24,
+        bend: Curve(&[]),
+        foot: Curve(&[
+            (0.0, -8.0),
+            (0.06, 0.0),
+            (0.20, 0.0),
+            (0.32, 32.0),
+            (0.42, 62.0),
+            (0.58, 88.0),
+            (0.76, 40.0),
+            (0.93, -8.0),
+        ]),
+    },
+    drop: 0.035,
+    bounce: 0.035,
+    lowest: 0.0,
+    lean: 9.0,
+    swing: 36.0,
+    elbow: -84.0,
+    twist: 8.0,
+};
+
 fn gait(skeleton: &Skeleton, phase: f64) -> Vec<Rigid> {
-    let mut turns = Turns::new(skeleton);
-    let stride = wave(phase + 0.25);
-    // The left foot meets the ground at phase 0: the pelvis turns left forwards, the chest against it.
-    let shift = DVec3::new(0.018 * wave(phase + 0.02), -0.019 - 0.015 * wave(2.0 * phase + 0.19), 0.0);
-    turns.set("pelvis", yaw(-6.0 * stride) * roll(2.5 * wave(phase)));
-    turns.set("chest", yaw(13.0 * stride) * roll(-3.0 * wave(phase)) * pitch(2.5));
-    turns.set("head", yaw(-7.0 * stride) * pitch(-2.0 + 3.0 * wave(2.0 * phase + 0.1)));
-    for (side, sign) in [("left", 1.0), ("right", -1.0)] {
-        let swing = sign * stride;
-        let hang = roll(sign * (MESHED - DOWN));
-        // The arm swings against the leg of its side; the elbow bends as it comes forward.
-        turns.set(&format!("{side} upper arm"), pitch(4.0 + 26.0 * swing) * hang);
-        let bend = -22.0 + 16.0 * wave(phase + 0.20 + if sign > 0.0 { 0.0 } else { 0.5 });
-        turns.set(&format!("{side} forearm"), hang.inverse() * pitch(bend) * hang);
-        let wrist = 9.0 * wave(phase + 0.10 + if sign > 0.0 { 0.0 } else { 0.5 });
-        turns.set(&format!("{side} hand"), hang.inverse() * pitch(wrist - 4.0) * hang);
+    WALK.pose(skeleton, phase)
+}
+
+fn run(skeleton: &Skeleton, phase: f64) -> Vec<Rigid> {
+    RUN.pose(skeleton, phase)
+}
+
+impl Manner {
+    fn pose(&self, skeleton: &Skeleton, phase: f64) -> Vec<Rigid> {
+        let mut turns = Turns::new(skeleton);
+        let stride = wave(phase + 0.25);
+        // The left foot meets the ground at phase 0: the pelvis turns left forwards, the chest against it.
+        let shift = skeleton.stride
+            * DVec3::new(0.018 * wave(phase + 0.02), -self.drop - self.bounce * wave(2.0 * phase + self.lowest), 0.0);
+        turns.set("pelvis", yaw(-self.twist * stride) * roll(2.5 * wave(phase)));
+        turns.set("chest", yaw(2.1 * self.twist * stride) * roll(-3.0 * wave(phase)) * pitch(self.lean));
+        turns.set("head", yaw(-1.1 * self.twist * stride) * pitch(0.5 - self.lean + 3.0 * wave(2.0 * phase + 0.1)));
+        for (side, sign) in [("left", 1.0), ("right", -1.0)] {
+            let swing = sign * stride;
+            let hang = roll(sign * (MESHED - DOWN));
+            // The arm swings against the leg of its side; the elbow bends as it comes forward.
+            turns.set(&format!("{side} upper arm"), pitch(4.0 + self.swing * swing) * hang);
+            let bend = self.elbow + 16.0 * wave(phase + 0.20 + if sign > 0.0 { 0.0 } else { 0.5 });
+            turns.set(&format!("{side} forearm"), hang.inverse() * pitch(bend) * hang);
+            let wrist = 9.0 * wave(phase + 0.10 + if sign > 0.0 { 0.0 } else { 0.5 });
+            turns.set(&format!("{side} hand"), hang.inverse() * pitch(wrist - 4.0) * hang);
+            let bone = |name: &str| skeleton.find(&format!("{side} {name}"));
+            if let (Some(upper), Some(lower), Some(foot)) = (bone("thigh"), bone("shank"), bone("foot")) {
+                let leg = Leg { upper, lower, middle: None, foot, sole: [-0.055, 0.195] };
+                let landing = if sign > 0.0 { 0.0 } else { 0.5 };
+                self.step.place(&leg, phase - landing, skeleton, shift, &mut turns.turns);
+            }
+        }
+        debug_assert!(turns.turns.iter().all(|t: &DQuat| t.is_finite()));
+        turns.pose(shift)
+    }
+}
+
+/// Keeps both feet flat where they are in the mesh, and puts a hand's turns on.
+fn standing(skeleton: &Skeleton, turns: &mut Turns, shift: DVec3) {
+    let still = Step { stride: 0.0, ahead: 0.0, lift: 0.0, foot: Curve(&[]), ..STEP };
+    for side in ["left", "right"] {
         let bone = |name: &str| skeleton.find(&format!("{side} {name}"));
         if let (Some(upper), Some(lower), Some(foot)) = (bone("thigh"), bone("shank"), bone("foot")) {
-            let leg = Leg { upper, lower, middle: None, foot, sole: [-0.085, 0.165] };
-            let landing = if sign > 0.0 { 0.0 } else { 0.5 };
-            STEP.place(&leg, phase - landing, skeleton, shift, &mut turns.turns);
+            let leg = Leg { upper, lower, middle: None, foot, sole: [-0.055, 0.195] };
+            still.place(&leg, 0.0, skeleton, shift, &mut turns.turns);
         }
     }
-    debug_assert!(turns.turns.iter().all(|t: &DQuat| t.is_finite()));
+}
+
+/// Stands and waves with the right hand.
+fn greet(skeleton: &Skeleton, phase: f64) -> Vec<Rigid> {
+    let mut turns = Turns::new(skeleton);
+    let shift = skeleton.stride * DVec3::new(0.016 * wave(phase), -0.012 - 0.006 * wave(2.0 * phase), 0.0);
+    turns.set("pelvis", roll(2.5 * wave(phase)) * yaw(2.0 * wave(phase + 0.2)));
+    turns.set("chest", roll(3.0 - 4.0 * wave(phase)) * yaw(-5.0));
+    turns.set("head", roll(-6.0 + 4.0 * wave(phase + 0.1)) * yaw(8.0 * wave(phase)));
+    let hang = roll(MESHED - DOWN);
+    turns.set("left upper arm", pitch(3.0 + 7.0 * wave(phase)) * hang);
+    turns.set("left forearm", hang.inverse() * pitch(-18.0 - 7.0 * wave(phase)) * hang);
+    turns.set("left hand", hang.inverse() * pitch(-4.0 + 6.0 * wave(phase - 0.1)) * hang);
+    let beat = 2.0 * phase;
+    turns.set("right upper arm", roll(-(MESHED + 22.0) - 7.0 * wave(beat)) * pitch(-6.0));
+    turns.set("right forearm", roll(-62.0 - 24.0 * wave(beat - 0.06)));
+    turns.set("right hand", roll(4.0 - 20.0 * wave(beat - 0.16)));
+    standing(skeleton, &mut turns, shift);
+    turns.pose(shift)
+}
+
+/// How far down the person is, by phase.
+const SUNK: Curve = Curve(&[(0.0, 0.0), (0.06, 0.03), (0.30, 1.04), (0.37, 0.98), (0.62, 1.0), (0.92, 0.0)]);
+
+/// The knees give way, the body slumps over them; then it stands up again.
+fn collapse(skeleton: &Skeleton, phase: f64) -> Vec<Rigid> {
+    let mut turns = Turns::new(skeleton);
+    let (down, late, later) = (SUNK.at(phase), SUNK.at(phase - 0.025), SUNK.at(phase - 0.05));
+    let shift = skeleton.stride * DVec3::new(0.01 * wave(phase), -0.50 * down, -0.10 * down);
+    turns.set("pelvis", pitch(26.0 * down));
+    turns.set("chest", pitch(34.0 * late) * roll(4.0 * later));
+    turns.set("head", pitch(36.0 * later) * yaw(8.0 * later));
+    for (side, sign) in [("left", 1.0), ("right", -1.0)] {
+        let hang = roll(sign * (MESHED - DOWN - 3.0 * late));
+        turns.set(&format!("{side} upper arm"), pitch(-62.0 * later + 4.0) * hang);
+        turns.set(&format!("{side} forearm"), hang.inverse() * pitch(-12.0 - 20.0 * later) * hang);
+        turns.set(&format!("{side} hand"), hang.inverse() * pitch(14.0 * later) * hang);
+    }
+    standing(skeleton, &mut turns, shift);
     turns.pose(shift)
 }

@@ -1,7 +1,7 @@
-//! What horse and camel share: the names of their bones, and walking on four legs.
+//! What four-legged creatures share: the names of their bones, and moving on four legs.
 
 use super::body::{Body, Turns};
-use super::gait::{Leg, Step, pitch, roll, wave, yaw};
+use super::gait::{Curve, Leg, Step, pitch, roll, wave, yaw};
 use super::limb::{Station, station};
 use super::skeleton::{Rigid, Skeleton};
 use glam::DVec3;
@@ -24,9 +24,9 @@ pub struct Joints {
 }
 
 /// The bones of a fore leg, from the trunk down.
-pub const FORE: [&str; 4] = ["* upper arm", "* forearm", "* fore cannon", "* fore hoof"];
+pub const FORE: [&str; 4] = ["* upper arm", "* forearm", "* fore cannon", "* fore foot"];
 /// The bones of a hind leg, from the trunk down.
-pub const HIND: [&str; 4] = ["* thigh", "* gaskin", "* hind cannon", "* hind hoof"];
+pub const HIND: [&str; 4] = ["* thigh", "* gaskin", "* hind cannon", "* hind foot"];
 
 /// A station in the middle plane, at `y, z`.
 pub const fn mid(y: f64, z: f64, radius: f64, flat: f64) -> Station {
@@ -64,11 +64,19 @@ pub struct Walk {
     pub hind_step: Step,
     /// How much lower the body is carried than in the reference pose.
     pub drop: f64,
+    /// How often the body rises and sinks in a loop, how far, and how many degrees it pitches and rolls.
+    pub beats: f64,
+    /// See `beats`.
+    pub rise: f64,
+    /// See `beats`.
+    pub pitch: f64,
+    /// See `beats`.
+    pub roll: f64,
     /// How much head and neck nod (1: a horse's walk).
     pub nod: f64,
     /// How much the tail swings.
     pub tail: f64,
-    /// Back and front end of the fore soles (z).
+    /// Back and front end of the fore soles, before the joint of the foot (z).
     pub fore_sole: [f64; 2],
     /// The same for the hind soles.
     pub hind_sole: [f64; 2],
@@ -78,10 +86,11 @@ impl Walk {
     /// The pose at a phase of the loop.
     pub fn pose(&self, skeleton: &Skeleton, phase: f64) -> Vec<Rigid> {
         let mut turns = Turns::new(skeleton);
-        // The body is lowest when a foot of either end has just landed, twice a loop; it rolls once.
-        let beat = 2.0 * (phase - self.fore[0]);
-        let shift = DVec3::new(0.012 * wave(phase), -self.drop - 0.008 * wave(beat + 0.25), 0.0);
-        turns.set("trunk", roll(1.6 * wave(phase - 0.1)) * pitch(0.8 * wave(beat)));
+        // The body is lowest when a foot of either end has just landed; it rolls once a loop.
+        let beat = self.beats * (phase - self.fore[0]);
+        let shift = skeleton.stride
+            * DVec3::new(0.0075 * self.roll * wave(phase), -self.drop - self.rise * wave(beat + 0.25), 0.0);
+        turns.set("trunk", roll(self.roll * wave(phase - 0.1)) * pitch(self.pitch * wave(beat)));
         // The head goes down as a fore foot bears weight.
         let nod = self.nod * wave(beat + 0.02);
         turns.set("lower neck", pitch(5.5 * nod) * yaw(2.0 * wave(phase)));
@@ -90,6 +99,20 @@ impl Walk {
         turns.set("tail root", yaw(9.0 * self.tail * wave(phase)) * pitch(-3.0 + 3.0 * wave(beat)));
         turns.set("tail", roll(11.0 * self.tail * wave(phase - 0.17)) * pitch(-4.0 * wave(beat - 0.2)));
         turns.set("tail tip", roll(13.0 * self.tail * wave(phase - 0.36)) * pitch(-6.0 * wave(beat - 0.4)));
+        self.place(skeleton, &mut turns, shift, |step, landing| (*step, phase - landing));
+        self.extras(&mut turns, phase);
+        turns.pose(shift)
+    }
+
+    /// Keeps all feet flat where they are in the mesh, whatever the trunk does.
+    pub fn stand(&self, skeleton: &Skeleton, turns: &mut Turns) {
+        let still =
+            |step: &Step| Step { stride: 0.0, ahead: 0.0, lift: 0.0, bend: Curve(&[]), foot: Curve(&[]), ..*step };
+        self.place(skeleton, turns, DVec3::ZERO, |step, _| (still(step), 0.0));
+    }
+
+    /// Puts the feet where their steps want them; `at` gives the step and its phase by the phase of landing.
+    fn place(&self, skeleton: &Skeleton, turns: &mut Turns, shift: DVec3, at: impl Fn(&Step, f64) -> (Step, f64)) {
         let legs =
             [(FORE, &self.fore_step, self.fore, self.fore_sole), (HIND, &self.hind_step, self.hind, self.hind_sole)];
         for (names, step, landing, sole) in legs {
@@ -97,10 +120,141 @@ impl Walk {
                 let bone = |i: usize| skeleton.find(&names[i].replace('*', side));
                 if let (Some(upper), Some(lower), middle, Some(foot)) = (bone(0), bone(1), bone(2), bone(3)) {
                     let leg = Leg { upper, lower, middle, foot, sole };
-                    step.place(&leg, phase - landing, skeleton, shift, &mut turns.turns);
+                    let (step, phase) = at(step, landing);
+                    step.place(&leg, phase, skeleton, shift, &mut turns.turns);
                 }
             }
         }
-        turns.pose(shift)
     }
+
+    /// What only some have: ears that flap, a trunk that swings.
+    fn extras(&self, turns: &mut Turns, phase: f64) {
+        for (side, sign) in [("left", 1.0), ("right", -1.0)] {
+            let flap = 8.0 + 14.0 * wave(self.beats * phase + 0.1 * sign);
+            turns.set(&format!("{side} ear"), yaw(-sign * flap));
+        }
+        for (i, name) in PROBOSCIS.into_iter().enumerate() {
+            let later = 0.09 * i as f64;
+            let swing = roll(7.0 * wave(phase - later)) * pitch(5.0 * wave(self.beats * phase - 0.2 - later));
+            turns.set(name, swing);
+        }
+    }
+}
+
+/// The bones of an elephant's trunk, from the head on.
+pub const PROBOSCIS: [&str; 6] =
+    ["proboscis 1", "proboscis 2", "proboscis 3", "proboscis 4", "proboscis 5", "proboscis 6"];
+
+/// A gallop: the hind feet land one after the other, then the fore feet; then all are in the air, gathered under
+/// the body. `stride` is how far a foot moves back on the ground, the soles are as in [`Walk`].
+pub const fn galloping(stride: f64, lift: f64, drop: f64, fore_sole: [f64; 2], hind_sole: [f64; 2]) -> Walk {
+    Walk {
+        hind: [0.0, 0.11],
+        fore: [0.27, 0.40],
+        fore_step: Step {
+            duty: 0.27,
+            stride,
+            ahead: 0.04 * stride,
+            lift,
+            bend: Curve(&[(0.0, 0.0), (0.24, 0.0), (0.38, 45.0), (0.55, 88.0), (0.72, 52.0), (0.92, 4.0)]),
+            foot: Curve(&[
+                (0.0, -6.0),
+                (0.04, 0.0),
+                (0.18, 0.0),
+                (0.29, 40.0),
+                (0.45, 105.0),
+                (0.60, 112.0),
+                (0.78, 45.0),
+                (0.94, -10.0),
+            ]),
+        },
+        hind_step: Step {
+            duty: 0.27,
+            stride,
+            ahead: 0.10 * stride,
+            lift: 0.85 * lift,
+            bend: Curve(&[(0.0, 0.0), (0.1, -6.0), (0.24, 6.0), (0.42, -26.0), (0.60, -40.0), (0.80, -20.0)]),
+            foot: Curve(&[
+                (0.0, -6.0),
+                (0.05, 0.0),
+                (0.18, 0.0),
+                (0.29, 40.0),
+                (0.44, 72.0),
+                (0.62, 45.0),
+                (0.82, 0.0),
+                (0.95, -8.0),
+            ]),
+        },
+        drop,
+        beats: 1.0,
+        rise: 0.22 * lift,
+        pitch: 4.5,
+        roll: 0.8,
+        nod: 1.3,
+        tail: 0.6,
+        fore_sole,
+        hind_sole,
+    }
+}
+
+/// How far down a creature is that collapses, rests and stands up again.
+const DOWN: Curve = Curve(&[(0.0, 0.0), (0.06, 0.05), (0.30, 1.03), (0.36, 1.0), (0.64, 1.0), (0.92, 0.0)]);
+
+/// Where the bones of the legs point to when it lies: degrees before straight down, from the trunk down. The fore feet
+/// are folded under the breast, or lie before it.
+const LYING_FORE: [[f64; 4]; 2] = [[-40.0, 100.0, -86.0, -98.0], [-42.0, 78.0, 86.0, 88.0]];
+const LYING_HIND: [f64; 4] = [72.0, -72.0, 84.0, 88.0];
+
+/// The legs give way, the body sinks to the ground, the neck follows; then it stands up again.
+pub fn collapse(skeleton: &Skeleton, phase: f64, feet_ahead: bool) -> Vec<Rigid> {
+    let mut turns = Turns::new(skeleton);
+    let down = |later: f64| DOWN.at(phase - later);
+    turns.set("trunk", roll(7.0 * down(0.02)) * pitch(3.0 * (down(0.0) - down(0.05))));
+    // The neck hangs: what rises is laid forward, as far as the ground allows.
+    let rest = |name: &str| {
+        skeleton.find(name).map_or(0.0, |bone| {
+            let bone = &skeleton.bones[bone as usize];
+            let along = bone.end - bone.joint;
+            along.z.atan2(-along.y).to_degrees()
+        })
+    };
+    let limp = down(0.03);
+    let wanted = [("lower neck", 80.0), ("upper neck", 70.0), ("head", 84.0)];
+    let mut carried = 0.0;
+    for (name, direction) in wanted {
+        let world = 0.85 * limp * (rest(name) - direction);
+        turns.set(name, pitch(world - carried) * yaw(8.0 * limp));
+        carried = world;
+    }
+    turns.set("tail root", pitch(-12.0 * limp) * yaw(14.0 * limp));
+    turns.set("tail", yaw(22.0 * limp));
+    turns.set("tail tip", yaw(26.0 * limp));
+    for (i, name) in PROBOSCIS.into_iter().enumerate() {
+        turns.set(name, pitch((if i < 2 { -26.0 } else { 12.0 }) * limp));
+    }
+    for side in ["left", "right"] {
+        for (names, directions) in [(FORE, LYING_FORE[usize::from(feet_ahead)]), (HIND, LYING_HIND)] {
+            let amount = if side == "left" { down(0.0) } else { down(0.025) };
+            let mut carried = 0.0;
+            for (name, direction) in names.into_iter().zip(directions) {
+                let name = name.replace('*', side);
+                let world = amount * (rest(&name) - direction);
+                turns.set(&name, pitch(world - carried));
+                carried = world;
+            }
+        }
+        let sign = if side == "left" { 1.0 } else { -1.0 };
+        turns.set(&format!("{side} ear"), yaw(-12.0 * sign * limp));
+    }
+    turns.pose(DVec3::ZERO)
+}
+
+/// The same with the fore feet folded under the breast, as hoofed animals lie.
+pub fn collapse_folded(skeleton: &Skeleton, phase: f64) -> Vec<Rigid> {
+    collapse(skeleton, phase, false)
+}
+
+/// The same with the fore feet ahead, as dogs lie.
+pub fn collapse_ahead(skeleton: &Skeleton, phase: f64) -> Vec<Rigid> {
+    collapse(skeleton, phase, true)
 }

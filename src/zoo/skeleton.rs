@@ -16,10 +16,18 @@ pub struct Bone {
 }
 
 /// The bones of a creature; parents come before their children.
-#[derive(Clone, Debug, Default, PartialEq)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct Skeleton {
     /// The bones.
     pub bones: Vec<Bone>,
+    /// How much longer the legs are than those that its motions were made for.
+    pub stride: f64,
+}
+
+impl Default for Skeleton {
+    fn default() -> Self {
+        Self { bones: Vec::new(), stride: 1.0 }
+    }
 }
 
 /// A rigid motion: turn about the origin, then shift.

@@ -1,7 +1,7 @@
 //! The snake: 3 long, its head at +z, slithering.
 
-use super::body::{Body, Motion, Turns};
-use super::gait::yaw;
+use super::body::{Body, Turns, motion};
+use super::gait::{Curve, pitch, roll, wave, yaw};
 use super::limb::{Station, station};
 use super::skeleton::{Rigid, Skeleton};
 use glam::{DQuat, DVec3};
@@ -32,7 +32,8 @@ const BEND: f64 = 27.0;
 
 /// The snake's bones, limbs and motion.
 pub fn snake() -> Body {
-    let mut body = Body::new(0.024, Motion { period: 1.6, stance, gait });
+    let mut body = Body::new(0.024, &[motion("slither", 1.6, gait), motion("rear", 3.2, rear)]);
+    body.stance = stance;
     // A body without elbows.
     body.softness = 1.8;
     body.bone("head", None, [0.0, 0.09, NECK], [0.0, 0.08, 1.52]);
@@ -117,4 +118,28 @@ fn centred(skeleton: &Skeleton, motions: &[Rigid]) -> Vec<Rigid> {
         skeleton.bones.iter().zip(motions).map(|(bone, motion)| motion.apply(bone.joint) - bone.joint).sum();
     let back = Rigid { turn: DQuat::IDENTITY, shift: -drift / count };
     motions.iter().map(|motion| Rigid { turn: motion.turn, shift: motion.shift + back.shift }).collect()
+}
+
+/// How far it is raised.
+const RAISED: Curve = Curve(&[(0.0, 0.0), (0.05, 0.0), (0.32, 1.0), (0.72, 1.0), (0.97, 0.0)]);
+
+/// Raises its head, sways and lies down again; the rest of the body is wound.
+fn rear(skeleton: &Skeleton, phase: f64) -> Vec<Rigid> {
+    let mut turns = Turns::new(skeleton);
+    let (up, sway) = (RAISED.at(phase), RAISED.at(phase) * wave(2.0 * phase));
+    // Where each bone heads and how steep it is, from the head on; only the front is raised.
+    let steep = [-38.0, -66.0, -52.0, -26.0, -7.0];
+    let winding = [6.0, 10.0, 16.0, 24.0, 30.0, 32.0, -8.0, -34.0, -38.0, -30.0, 12.0];
+    let mut heading = 12.0 * sway;
+    let mut carrier = yaw(heading) * pitch(10.0 * up) * roll(4.0 * sway);
+    turns.set("head", carrier);
+    for (i, name) in NAMES.into_iter().enumerate() {
+        let raised = steep.get(i).map_or(0.0, |degrees| degrees * RAISED.at(phase - 0.012 * i as f64));
+        heading += winding[i] * (0.8 + 0.2 * wave(phase - 0.06 * i as f64)) - if i < 4 { 3.0 * sway } else { 0.0 };
+        let lean = if i < 4 { 7.0 * RAISED.at(phase) * wave(2.0 * phase - 0.08 * i as f64) } else { 0.0 };
+        let own = yaw(heading) * roll(lean) * pitch(raised);
+        turns.set(name, carrier.inverse() * own);
+        carrier = own;
+    }
+    centred(skeleton, &turns.pose(DVec3::ZERO))
 }

@@ -5,7 +5,7 @@ use glam::DMat3;
 use std::collections::BTreeMap;
 
 fn recipe(name: &str, faces: usize, exact: bool) -> Recipe {
-    Recipe { name: name.into(), faces, poses: 8, exact }
+    Recipe { name: name.into(), faces, poses: 8, exact, ..Recipe::default() }
 }
 
 fn every(faces: usize, exact: bool) -> impl Iterator<Item = (&'static str, Creature)> {
@@ -201,11 +201,11 @@ fn motion_is_a_loop_on_the_ground() {
 fn gaits_return_to_their_start_and_planted_feet_stay_planted() {
     let bodies = [horse::horse(), camel::camel(), person::person(), dinosaur::dinosaur(), snake::snake(), hand::hand()];
     for body in bodies {
-        let pose = |phase: f64| (body.motion.gait)(&body.skeleton, phase);
+        let pose = |phase: f64| (body.motions[0].gait)(&body.skeleton, phase);
         for (a, b) in pose(0.0).iter().zip(&pose(1.0)) {
             assert!(a.shift.distance(b.shift) < 1e-9 && a.turn.angle_between(b.turn) < 1e-6);
         }
-        for (bone, number) in body.skeleton.bones.iter().zip(0..).filter(|(b, _)| b.name.contains("left fore hoof")) {
+        for (bone, number) in body.skeleton.bones.iter().zip(0..).filter(|(b, _)| b.name.contains("left fore foot")) {
             // Somewhere in the loop a fore foot is on the ground for half of it, moving back evenly.
             let sole = DVec3::new(bone.end.x, 0.0, bone.end.z);
             let on_ground = (0..100).filter(|i| pose(*i as f64 / 100.0)[number as usize].apply(sole).y < 0.012).count();

@@ -18,7 +18,7 @@ pub struct Made {
 impl Made {
     /// The creature with so many handles.
     pub fn new(name: &str, faces: usize, poses: usize, handles: usize) -> Self {
-        let recipe = Recipe { name: name.into(), faces, poses, exact: false };
+        let recipe = Recipe { name: name.into(), faces, poses, exact: false, ..Recipe::default() };
         let sequence = make(&recipe).expect("a creature of the zoo").sequence;
         let points = sequence.reference();
         let mut chosen = vec![points[0]];

@@ -7,7 +7,19 @@ use serde_json::Value;
 /// Seconds for what is to answer at once; an idle machine needs far less.
 const AT_ONCE: f64 = 1.5;
 
-const VIEWS: [&str; 7] = ["deformation", "sets", "distance", "features", "clusters", "unsmoothed", "parts"];
+const VIEWS: [&str; 11] = [
+    "gradients",
+    "deformation",
+    "dual",
+    "sets",
+    "distance",
+    "features",
+    "clusters",
+    "merging",
+    "unsmoothed",
+    "cut",
+    "parts",
+];
 
 /// Sets a slider as a hand does.
 fn slide(page: &mut Page, selector: &str, value: u32) {
@@ -77,6 +89,7 @@ fn keys_do_what_the_sheet_says() {
     let panel = page.state()["panel"].clone();
     page.press("p");
     assert_ne!(page.state()["panel"], panel);
+    page.evaluate("document.querySelector('#stage canvas').focus()");
     for (key, what) in [("ArrowLeft", "turns"), ("+", "comes nearer"), ("w", "shows triangles"), ("f", "frames")] {
         let before = page.picture_of("canvas", "key-before");
         page.press(key);

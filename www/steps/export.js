@@ -1,9 +1,11 @@
 /** The step Export: what can be taken away, how large it is, and what it loses. */
-import { fold } from '../controls.js';
+import { fold, select } from '../controls.js';
 import { h, icon, show } from '../dom.js';
 import { bytes, number } from '../format.js';
 import { lesson } from '../lesson.js';
-import { pairsFile, reportFile, saveBlob, saveParts, savePicture } from '../save.js';
+import { writeProject } from '../project.js';
+import { fileName, pairsFile, partsFile, pointsFile, reportFile, saveBlob, saveParts, savePicture, saveRigid } from '../save.js';
+import { recordLoop, videoType } from '../video.js';
 
 export const exportStep = {
   id: 'export',
@@ -16,6 +18,9 @@ export const exportStep = {
 
 /** Targets of up to this many vertices times poses are written at once, to know their size. */
 const SMALL = 4_000_000;
+
+/** Sizes of a picture in pixels; null: as it is on the screen. */
+const SIZES = [['As shown', null], ['Full HD', [1920, 1080]], ['4K', [3840, 2160]], ['Square', [2048, 2048]], ['Slide', [1600, 1200]]];
 
 const FORMS = [
   ['exact', 'GLB, exact', 'Every pose as a shape of its own. As it is here, to the last digit.'],
@@ -36,14 +41,21 @@ function build(app) {
   };
   show(still,
     item('Parts as GLB', 'The moving source with a material for each part.', () => saveParts(app), 'export-parts'),
-    item('Picture', 'What is shown now, PNG.', () => savePicture(app), 'export-picture'));
+    item('Rigid skin', 'A joint for each part and every vertex on one of them, as engines like it. It says how far off that is.', () => saveRigid(app), 'export-rigid'),
+    item('Parts as numbers', 'The part of each face, sizes and residuals, JSON.', () => app.result && saveBlob(partsFile(app), `${fileName(app)}-parts.json`), 'export-labels'),
+    item('Key points', 'Vertices, errors and how they were chosen, JSON.', () => (app.doc.count ? saveBlob(pointsFile(app), `${fileName(app)}-points.json`) : app.say('There are no key points yet. The step Key points finds them.', 'news')), 'export-points'));
+  const size = select('Size', SIZES.map(([name, pixels]) => [name, pixels ? `${name}, ${pixels.join(' × ')}` : name]), SIZES[0][0], () => {});
+  const pictures = h('div', { class: 'stack' }, size,
+    item('Picture', 'What is shown now, PNG.', () => savePicture(app, SIZES.find(([name]) => name === size.querySelector('select').value)[1]), 'export-picture'),
+    videoType() && item('Video', 'The motion from beginning to end, as it plays now.', () => saveVideo(app), 'export-video'),
+    item('Project', 'Everything as one file, to go on later or elsewhere.', () => saveProject(app), 'export-project'));
   app.on('motion', () => {
     update();
     if (app.step === 'export') measure(app);
   });
   app.on('files target doc', update);
   update();
-  return h('div', { class: 'step' }, h('h2', {}, 'Export'), h('h3', {}, 'The target in motion'), moving, h('h3', {}, 'The source'), still,
+  return h('div', { class: 'step' }, h('h2', {}, 'Export'), h('h3', {}, 'The target in motion'), moving, h('h3', {}, 'The source'), still, h('h3', {}, 'Pictures, and all of it'), pictures,
     fold('Which one to take', { load: () => lesson('export') }));
 }
 
@@ -61,6 +73,19 @@ function item(name, about, click, id) {
 async function saveForm(app, form) {
   const file = await app.transfer.file(form);
   if (file) saveBlob(file.blob, `${baseName(app)}-${form}.glb`);
+}
+
+async function saveVideo(app) {
+  app.recording = new AbortController();
+  const made = await app.work.run('video', 'recording the motion', (progress) =>
+    recordLoop(app.stage, app.timeline, (done) => progress({ stage: 'recording the motion', done }), app.recording.signal));
+  app.recording = null;
+  if (made) saveBlob(made.blob, `${fileName(app)}.${made.extension}`);
+}
+
+async function saveProject(app) {
+  const blob = await writeProject(app, app.timeline);
+  if (blob) saveBlob(blob, `${fileName(app)}-project.glb`);
 }
 
 /** Writes both forms, so that their sizes are known. */

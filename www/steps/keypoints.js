@@ -3,9 +3,11 @@ import { choice, facts, fold, slider, toggle } from '../controls.js';
 import { errorCurve, fallingLines, ranking } from '../curves.js';
 import { h, show } from '../dom.js';
 import { duration, number, plural } from '../format.js';
-import { lesson } from '../lesson.js';
+import { lesson, stageLesson } from '../lesson.js';
+import { placeIn } from '../stages.js';
 import { pointList } from './point-list.js';
-import { KEY_POINT_VIEWS, pointOf } from './point-views.js';
+import { KEY_POINT_VIEWS } from './point-views.js';
+import { candidates, pointOf } from './search-views.js';
 import { SLIDERS, STOPS } from './search-parameters.js';
 import { warnings } from './warnings.js';
 
@@ -50,9 +52,9 @@ function build(app) {
     show(choices, ...choicePlot(app));
   };
   app.on('doc points source busy', update);
-  app.on('view', () => show(choices, ...choicePlot(app)));
+  app.on('view place', () => show(choices, ...choicePlot(app)));
   update();
-  return h('div', { class: 'step' }, h('h2', {}, 'Key points'), words, find, numbers, curve, list, noticed, ...how,
+  return h('div', { class: 'step' }, h('h2', {}, 'Key points'), stageLesson(app, 'keypoints'), words, find, numbers, curve, list, noticed, ...how,
     fold('How it works', { load: () => lesson('keypoints') }));
 }
 
@@ -95,15 +97,14 @@ function energyPlot(app) {
 
 function choicePlot(app) {
   const { run } = app.doc;
-  const { shown } = app.keypoints;
+  const shown = placeIn(app, candidates);
   const step = run?.steps[shown];
   if (!step) return [h('p', { class: 'small faint' }, 'Known for points that were searched for.')];
   const chosen = [...step.candidates].indexOf(step.chosen);
   const plot = ranking(step.errors, chosen, `Candidates of step ${shown + 1} by error`);
   return [
-    slider({ label: 'Step', low: 1, high: run.steps.length, step: 1, reading: String, input: (value) => app.keypoints.show(value - 1) }).with(shown + 1),
     plot, h('p', { class: 'small faint' },
-      `Error if a candidate becomes point ${pointOf(run, shown)}, from the best to the worst of ${step.errors.length}. Under the picture, “Candidates” shows where they are.`)];
+      `Error if a candidate becomes point ${pointOf(run, shown)}, from the best to the worst of ${step.errors.length}. Under the picture, “Choice” shows where they are, step by step.`)];
 }
 
 function listSection(app) {

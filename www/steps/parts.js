@@ -2,10 +2,11 @@
 import { choice, facts, fold, select, slider, toggle } from '../controls.js';
 import { h, show } from '../dom.js';
 import { duration, number, percent, perMille, plural } from '../format.js';
-import { lesson } from '../lesson.js';
+import { lesson, stageLesson } from '../lesson.js';
 import { costCurve, histogram } from '../plot.js';
 import { fitting, METHODS, reading, SLIDERS, SMOOTHINGS } from './parameters.js';
-import { MARK, VIEWS } from './views.js';
+import { MARK } from './paint.js';
+import { VIEWS } from './views.js';
 import { warnings } from './warnings.js';
 
 export const partsStep = {
@@ -43,7 +44,7 @@ function build(app) {
   };
   app.on('result', showResult);
   showResult();
-  return h('div', { class: 'step' }, h('h2', {}, 'Parts'), quality, noticed, curve, ...folds);
+  return h('div', { class: 'step' }, h('h2', {}, 'Parts'), stageLesson(app, 'parts'), quality, noticed, curve, ...folds);
 }
 
 function curvePlot(app) {

@@ -1,5 +1,6 @@
 /** The step Source: what is open, and how to open something else. */
 import { choice, facts, fold, select, toggle } from '../controls.js';
+import { doctor, untold, worthALook } from '../doctor.js';
 import { h, show } from '../dom.js';
 import { chosen } from '../files.js';
 import { count, duration, number, plural, title } from '../format.js';
@@ -12,8 +13,8 @@ export const sourceStep = {
   title: 'Source',
   summary(app) {
     if (!app.sequence) return '';
-    const { length } = app.sequence.warnings;
-    return length ? `${nameOf(app)} · ${plural(length, 'note')}` : nameOf(app);
+    const notes = worthALook(app.sequence);
+    return notes ? `${nameOf(app)} · ${plural(notes, 'note')}` : nameOf(app);
   },
   build,
 };
@@ -26,6 +27,7 @@ const REFERENCES = [['bind', 'bind pose'], ['nodes', 'as placed in the file'], [
 /** @param {import('../app.js').App} app */
 function build(app) {
   const current = h('div', { class: 'stack' });
+  const health = doctor(app, 'source');
   const gallery = h('div');
   const update = () => {
     const { source, sequence } = app;
@@ -39,14 +41,15 @@ function build(app) {
         sequence.timed && ['Length', duration(sequence.times.at(-1) - sequence.times[0])],
         ['Diagonal', number(sequence.diagonal), 'Of the bounding box of the reference pose, in the units of the file'],
       ]),
-      ...warnings(app, sequence.warnings),
+      ...warnings(app, untold(sequence.warnings)),
       source.kind === 'zoo' ? creatureOptions(app) : isGltf(app) && animationOptions(app));
+    health.update();
     show(gallery, choice('Creature', app.about.creatures.map((name) => [name, title(name)]),
       source.kind === 'zoo' ? source.recipe.name : null, (name) => app.openCreature({ name })));
   };
   app.on('source', update);
   update();
-  return h('div', { class: 'step' }, h('h2', {}, 'Source'), current,
+  return h('div', { class: 'step' }, h('h2', {}, 'Source'), current, health.element,
     h('h3', {}, 'Creatures'), gallery,
     h('h3', {}, 'One moves like the other'), pairGallery(app),
     h('h3', {}, 'Your own'), fileButton(app),

@@ -1,5 +1,6 @@
 /** The step Target: another figure, and where the key points lie on it. */
 import { facts, fold } from '../controls.js';
+import { doctor, untold } from '../doctor.js';
 import { h, show } from '../dom.js';
 import { chosen } from '../files.js';
 import { count, title } from '../format.js';
@@ -25,6 +26,7 @@ export const targetStep = {
 /** @param {import('../app.js').App} app */
 function build(app) {
   const now = h('div', { class: 'stack' });
+  const health = doctor(app, 'target');
   const pairs = h('div');
   const list = pointList(app, 'target');
   const acceptAll = h('button', { type: 'button', class: 'button', title: 'Accept all proposals (A)', on: { click: () => app.target.acceptAll() } }, 'Accept all');
@@ -42,7 +44,7 @@ function build(app) {
         h('div', { class: 'row' }, h('p', { class: 'name' }, nameOf(app.target)),
           h('button', { type: 'button', class: 'text-button', on: { click: () => app.target.close() } }, 'Put away')),
         facts([['Vertices', count(sequence.sizes.vertices)], ['Faces', count(sequence.sizes.faces)]]),
-        ...warnings(app, sequence.warnings, app.second));
+        ...warnings(app, untold(sequence.warnings), app.second));
     }
     const { placed, proposed, missing } = app.target.tally;
     tally.textContent = [placed && `${placed} placed`, proposed && `${proposed} proposed`, missing && `${missing} missing`].filter(Boolean).join(' · ');
@@ -56,11 +58,13 @@ function build(app) {
       on: { click: () => app.target.openCreature({ name }) } }, title(name))));
   app.on('doc target source', update);
   app.on('target source', choose);
+  app.on('target', () => health.update());
   update();
   choose();
+  health.update();
   return h('div', { class: 'step' }, h('h2', {}, 'Target'),
     h('p', { class: 'small faint' }, 'A second figure that is to move like the first. It needs no skeleton and no animation.'),
-    now, pairs,
+    now, health.element, pairs,
     h('h3', {}, 'Creatures'), creatures,
     h('h3', {}, 'Your own'), fileButton(app),
     h('p', { class: 'small faint' }, 'Or drop it anywhere while this step is open.'),

@@ -2,51 +2,23 @@
  * The stage views of the segmentation, in the order in which the method computes them. Each paints the creature
  * with what one step found and says what its colours mean.
  *
- * A view is `{id, label, title, paint(app), legend(app)}`; the legend describes itself as
- * `{kind: 'scalar'|'sets'|'steps'|'parts'|'words', …}` for dock.js.
+ * A view is `{id, label, title, paint(app, place), legend(app)}`; the legend describes itself as
+ * `{kind: 'scalar'|'sets'|'parts'|'words', …}` for dock.js. One with positions also has what stages.js says, one that
+ * draws over the picture what overlay.js says; `faces`: a click chooses a face; `needs(app)`: whether there is such a stage.
  */
 import { number, percent, plural } from '../format.js';
+import { dual, gradients } from './face-views.js';
+import { MARK, paintParts as parts, scalar, topOf } from './paint.js';
+import { cut, merging, refined } from './tree-views.js';
 
-/** Styles of `Viewport.mark_faces`. */
-export const MARK = { highlight: 0, point: 1 };
-/** Scalar maps end at this quantile: distances have heavy tails. */
-const TOP = 0.98;
 /** Deformation is shown over this many powers of ten. */
 const DECADES = 3;
-
-const tops = new WeakMap();
-
-/** A high quantile of the finite values of a field: the end of its colour map. */
-function topOf(field) {
-  if (!tops.has(field)) {
-    const finite = field.filter(Number.isFinite).sort();
-    tops.set(field, finite[Math.floor(TOP * (finite.length - 1))] || finite.at(-1) || 1);
-  }
-  return tops.get(field);
-}
-
-function scalar(app, values, low, high, map) {
-  app.stage.boundaries = false;
-  app.stage.paint(['paint_scalar', values, low, high, map]);
-}
-
-/**
- * Paints parts. What colour each part has follows from the engine's own parts, then those in force: so it is the
- * same whatever was looked at before, and on both sides of a link.
- */
-function parts(app, labels) {
-  const { automatic, labels: current } = app.result;
-  const chain = new Set([automatic.labels, current, labels]);
-  app.stage.boundaries = true;
-  app.stage.paint(['paint_clay'], ...[...chain].map((each) => ['paint_parts', each, countOf(each)]));
-}
-
-const countOf = (labels) => labels.reduce((most, label) => Math.max(most, label + 1), 0);
 
 /** The share of faces for which a mask is set. */
 const share = (mask) => mask.reduce((sum, value) => sum + value, 0) / Math.max(1, mask.length);
 
 export const VIEWS = [
+  gradients,
   {
     id: 'deformation',
     label: 'Deformation',
@@ -61,6 +33,7 @@ export const VIEWS = [
       return { kind: 'scalar', map: 'viridis', marks, unit: 'deformation distance, logarithmic' };
     },
   },
+  dual,
   {
     id: 'sets',
     label: 'A and B',
@@ -91,50 +64,41 @@ export const VIEWS = [
     id: 'features',
     label: 'Features',
     title: 'The feature faces in the order in which they were found, each with its region of influence (§3.2)',
-    paint(app) {
+    name: 'Feature',
+    count: ({ result }) => result.features.length,
+    where: ({ result }, index) => (result.features[index]
+      ? `${plural(result.features[index].region.length, 'face')} under its influence, partition ${result.features[index].partition + 1}` : 'none was found'),
+    paint(app, index) {
       const { features, labels } = app.result;
       app.stage.boundaries = false;
       const mask = new Uint8Array(labels.length);
-      const feature = features[app.feature];
-      for (const face of feature?.region ?? []) mask[face] = 1;
+      for (const face of features[index]?.region ?? []) mask[face] = 1;
       app.stage.paint(['paint_set', mask]);
-      app.stage.mark(Uint32Array.from(features.slice(0, app.feature + 1), ({ face }) => face), MARK.point);
+      app.stage.mark(Uint32Array.from(features.slice(0, index + 1), ({ face }) => face), MARK.point);
     },
-    legend: ({ result, feature }) => ({
-      kind: 'steps',
-      name: 'Feature',
-      index: feature,
-      count: result.features.length,
-      text: result.features[feature]
-        ? `${plural(result.features[feature].region.length, 'face')} under its influence, partition ${result.features[feature].partition + 1}`
-        : 'No feature was found.',
-      go: 'setFeature',
+    legend: ({ result }) => ({
+      kind: 'words',
+      text: result.features.length ? `${plural(result.features.length, 'feature face')}, farthest first; each takes its region out of the search.` : 'No feature was found.',
     }),
   },
   {
     id: 'clusters',
     label: 'Clusters',
     title: 'The partitions after each round of clustering (§3.3)',
-    paint: (app) => parts(app, app.result.rounds[app.round] ?? app.result.unsmoothed),
-    legend: ({ result, round }) => ({
-      kind: 'steps',
-      name: 'Round',
-      index: round,
-      count: result.rounds.length,
-      text: result.rounds[round] ? plural(new Set(result.rounds[round]).size, 'partition') : 'Clustering was not needed.',
-      go: 'setRound',
-    }),
-  },
-  {
-    id: 'unsmoothed',
-    label: 'Before smoothing',
-    title: 'The parts before their boundaries were smoothed by a min cut (§3.4)',
-    paint: (app) => parts(app, app.result.unsmoothed),
+    name: 'Round',
+    count: ({ result }) => result.rounds.length,
+    first: ({ result }) => result.rounds.length - 1,
+    where: ({ result }, index) => (result.rounds[index] ? plural(new Set(result.rounds[index]).size, 'partition') : 'not needed'),
+    paint: (app, index) => parts(app, app.result.rounds[index] ?? app.result.unsmoothed),
     legend: ({ result }) => ({
       kind: 'words',
-      text: `Residual ${number(1000 * result.residual_before_smoothing)} ‰ of its size before smoothing, ${number(1000 * result.rigid_residual)} ‰ after`,
+      text: result.merges.length && result.rounds.length > 1 ? 'Every face goes to the feature nearest to it. The last round cuts large clusters further, for the merge tree.'
+        : 'Every face goes to the feature nearest to it.',
     }),
   },
+  merging,
+  refined,
+  cut,
   {
     id: 'parts',
     label: 'Parts',

@@ -1,6 +1,6 @@
 /** Warnings of the importer and of the segmentation, in words. */
 import { h } from '../dom.js';
-import { MARK } from './views.js';
+import { MARK } from './paint.js';
 
 /**
  * @param {{code: string, message: string, faces?: number[]}[]} list

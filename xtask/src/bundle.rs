@@ -3,6 +3,7 @@
 //! ```text
 //! dist/index.html           as it is in the project
 //! dist/www/…                as it is in the project
+//! dist/sw.js                www/service-worker.js, with the names of all files and a version of them
 //! dist/pkg/page.js          loads page_bg.wasm: the crate with feature `page`
 //! dist/pkg/worker.js        loads worker_bg.wasm: the crate with feature `worker`
 //! ```
@@ -42,9 +43,20 @@ pub fn build(dev: bool) -> Result<()> {
         let wasm = compile(bundle, dev)?;
         files.add_folder("pkg", &bind(bundle, &wasm, dev)?)?;
     }
+    add_service_worker(&mut files)?;
     dist::write(&files, &folder())?;
     report(&files, dev)?;
     println!("dist/ is ready ({:.1} s)", start.elapsed().as_secs_f64());
+    Ok(())
+}
+
+/// Puts the service worker beside the page, because it serves what lies below it, with the list of what it keeps and a
+/// version that changes with any file.
+fn add_service_worker(files: &mut dist::Files) -> Result<()> {
+    let code = files.take("www/service-worker.js").context("www/service-worker.js is missing")?;
+    let names: Vec<String> = files.names().map(|name| format!("'{name}'")).collect();
+    let head = format!("const VERSION = '{:016x}';\nconst FILES = [{}];\n", files.fingerprint(), names.join(", "));
+    files.add_text("sw.js", head + &String::from_utf8(code)?);
     Ok(())
 }
 

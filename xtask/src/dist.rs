@@ -4,6 +4,7 @@ use anyhow::{Context, Result};
 use flate2::{Compression, write::GzEncoder};
 use std::collections::BTreeMap;
 use std::fs;
+use std::hash::{DefaultHasher, Hash, Hasher};
 use std::io::Write;
 use std::path::Path;
 
@@ -42,6 +43,28 @@ impl Files {
             }
         }
         Ok(())
+    }
+
+    /// Adds a file that is made here.
+    pub fn add_text(&mut self, name: &str, text: String) {
+        self.0.insert(name.to_owned(), text.into_bytes());
+    }
+
+    /// Takes a file out.
+    pub fn take(&mut self, name: &str) -> Option<Vec<u8>> {
+        self.0.remove(name)
+    }
+
+    /// The names of all files, in order.
+    pub fn names(&self) -> impl Iterator<Item = &str> {
+        self.0.keys().map(String::as_str)
+    }
+
+    /// A number that is another when any name or byte is.
+    pub fn fingerprint(&self) -> u64 {
+        let mut hasher = DefaultHasher::new();
+        self.0.hash(&mut hasher);
+        hasher.finish()
     }
 
     /// Bytes of the files whose names are chosen, each gzipped by itself.
@@ -118,6 +141,13 @@ mod tests {
         assert_eq!(fs::metadata(folder.join("index.html"))?.modified()?, kept);
         fs::remove_dir_all(folder)?;
         Ok(())
+    }
+
+    #[test]
+    fn a_fingerprint_is_of_names_and_bytes() {
+        let of = |name: &str, byte| Files(BTreeMap::from([(name.into(), vec![byte])])).fingerprint();
+        assert_eq!(of("a", 1), of("a", 1));
+        assert!(of("a", 1) != of("a", 2) && of("a", 1) != of("b", 1));
     }
 
     #[test]

@@ -85,7 +85,7 @@ fn is_root() -> bool {
 }
 
 /// Other people's programs that exported files are tried with, as npm packages without dependencies of their own.
-const PLAYERS: [&str; 2] = ["three@0.187.0", "gltf-validator@2.0.0-dev.3.10"];
+const PLAYERS: [&str; 3] = ["three@0.187.0", "gltf-validator@2.0.0-dev.3.10", "axe-core@4.14.1"];
 
 /// The folder with [`PLAYERS`] in its `node_modules`, fetched if need be; else why there is none. They are for
 /// checking only: without Node.js or the network, all else goes on.
@@ -104,7 +104,7 @@ pub fn players() -> Result<PathBuf> {
             bail!("npm is not installed");
         }
         std::fs::create_dir_all(&folder)?;
-        println!("fetching {}", PLAYERS.join(" and "));
+        println!("fetching {}", PLAYERS.join(", "));
         let mut npm = shell::program("npm");
         npm.arg("install").arg("--prefix").arg(&folder);
         npm.args(["--ignore-scripts", "--no-audit", "--no-fund", "--no-save", "--loglevel", "error"]);

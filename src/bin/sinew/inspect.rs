@@ -6,6 +6,7 @@ use crate::output::say;
 use clap::Args;
 use serde_json::{Value, json};
 use sinew::import::Imported;
+use sinew::mesh::doctor::{Diagnosis, Finding, Severity};
 use sinew::mesh::pieces::{census, pieces};
 
 /// Arguments of `sinew inspect`.
@@ -51,13 +52,13 @@ fn report(imported: &Imported) -> Value {
         "collapsed_faces": census.collapsed_faces,
         "unused_vertices": census.unused_vertices,
         "warnings": imported.warnings,
+        "diagnosis": Diagnosis::of(sequence, &imported.warnings),
     })
 }
 
 fn print(imported: &Imported) {
     let sequence = &imported.sequence;
     let sizes = sequence.sizes();
-    let census = census(sequence.faces(), sizes.vertices);
     say(sequence.name());
     say(format_args!("  vertices    {}", sizes.vertices));
     say(format_args!("  faces       {}", sizes.faces));
@@ -68,15 +69,28 @@ fn print(imported: &Imported) {
         let taken = if imported.clip == Some(number) { "  (taken)" } else { "" };
         say(format_args!("  clip {number}      {} {:.2} s{taken}", clip.name, clip.seconds));
     }
-    for (what, count) in [
-        ("edges with one face", census.boundary_edges),
-        ("edges with more than two faces", census.nonmanifold_edges),
-        ("faces that name a vertex twice", census.collapsed_faces),
-        ("vertices without a face", census.unused_vertices),
-    ] {
-        if count > 0 {
-            say(format_args!("  {count} {what}"));
-        }
+    let diagnosis = Diagnosis::of(sequence, &imported.warnings);
+    say(format_args!("  {}", diagnosis.summary));
+    diagnosis.findings.iter().for_each(print_finding);
+    let told = |code: &str| matches!(code, "welded" | "collapsed-faces");
+    let warnings: Vec<_> = imported.warnings.iter().filter(|warning| !told(warning.code)).cloned().collect();
+    print_warnings(&warnings);
+}
+
+/// Faces of a finding that are named; of more, `--json` names all.
+const NAMED: usize = 8;
+
+fn print_finding(finding: &Finding) {
+    let mark = match finding.severity {
+        Severity::Grave => "!!",
+        Severity::Care => " !",
+        Severity::Harmless => " ·",
+    };
+    say(format_args!("  {mark} {}", finding.what));
+    say(format_args!("     {} {}", finding.done, finding.means));
+    if !finding.faces.is_empty() {
+        let named: Vec<String> = finding.faces.iter().take(NAMED).map(u32::to_string).collect();
+        let more = if finding.faces.len() > NAMED { ", …" } else { "" };
+        say(format_args!("     faces {}{more}", named.join(", ")));
     }
-    print_warnings(&imported.warnings);
 }

@@ -4,6 +4,7 @@ mod input;
 mod inspect;
 mod keypoints;
 mod output;
+mod picture;
 mod propose;
 mod segment;
 mod transfer;

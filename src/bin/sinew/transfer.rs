@@ -1,12 +1,18 @@
 //! `sinew transfer`: a second mesh moves like the first.
 
+mod compare;
+mod faces;
+mod pairs;
+
 use crate::Refusal;
 use crate::input::{Input, print_warnings};
 use crate::output::{self, counted, say};
 use clap::{Args, ValueEnum};
 use glam::DVec3;
+use pairs::pairs;
 use serde_json::{Map, Value, json};
 use sinew::clock;
+use sinew::export::skin::{Influences, Skin, SkinPose, light};
 use sinew::import::{File, Imported, Options, natural_order, open_in_order};
 use sinew::mesh::ball::unit_ball;
 use sinew::observer::Silent;
@@ -26,8 +32,8 @@ pub struct Transfer {
     /// The mesh that is to move: its reference pose
     #[arg(long, value_name = "MESH")]
     target: PathBuf,
-    /// Corresponding vertices: [{"source": 12, "target": 34}, …]
-    #[arg(long, value_name = "FILE.json")]
+    /// Corresponding vertices: [{"source": 12, "target": 34}, …], or lines of two numbers (.cons)
+    #[arg(long, value_name = "FILE")]
     pairs: PathBuf,
     /// The family of methods
     #[arg(long, value_enum, default_value_t = MethodArgument::Biharmonic)]
@@ -41,6 +47,10 @@ pub struct Transfer {
     /// Write the moving target
     #[arg(long, value_name = "FILE.glb")]
     out: Option<PathBuf>,
+    /// With --out: a skin whose joints are the handles, small whatever the number of poses, instead of exact shapes; the
+    /// report says what error that adds
+    #[arg(long, requires = "out")]
+    light: bool,
     /// Write one OBJ a pose, with the target's own vertices and polygons
     #[arg(long, value_name = "DIR")]
     out_poses: Option<PathBuf>,
@@ -50,12 +60,22 @@ pub struct Transfer {
     /// The target's true poses, to measure the result against: files, or a folder of files in natural order
     #[arg(long, value_name = "FILE", num_args = 1..)]
     truth: Vec<PathBuf>,
+    /// Transfer by every method and write how far each is from the truth
+    #[arg(long, value_name = "FILE.json", requires = "truth")]
+    compare: Option<PathBuf>,
+    /// By gradients or posed: vertices of the target that go exactly as far as the source does there, as feet that stand
+    #[arg(long, value_name = "VERTEX", value_delimiter = ',')]
+    pin: Vec<u32>,
 }
 
 #[derive(Clone, Copy, PartialEq, ValueEnum)]
 enum MethodArgument {
     /// By biharmonic weights
     Biharmonic,
+    /// What each face does, asked of the target's faces (Sumner & Popović 2004)
+    Gradients,
+    /// The same, after the target was turned into the source's posture part by part
+    Posed,
 }
 
 #[derive(Clone, Copy, PartialEq, ValueEnum)]
@@ -76,7 +96,13 @@ impl Transfer {
         let target = mesh(std::slice::from_ref(&self.target))?;
         let pairs = pairs(&self.pairs)?;
         let reading = clock::seconds() - start;
+        if let Some(path) = &self.compare {
+            return self.run_comparison(path, &source, &target, &pairs);
+        }
         let parameters = self.parameters();
+        if parameters.method.moves_vertices() {
+            return self.run_by_faces(&source, &target, &pairs, &parameters, reading);
+        }
         let result = transfer(&source.sequence, &target.sequence, &pairs, &parameters, &mut Silent)?;
         let begun = clock::seconds();
         let positions = result.poses(target.sequence.reference());
@@ -86,28 +112,46 @@ impl Transfer {
         if let Some(folder) = &self.out_poses {
             write_poses(folder, &moved)?;
         }
+        let mut added = None;
         if let Some(path) = &self.out {
-            output::write_glb(path, &moved, &vec![0; moved.faces().len()], &[])?;
+            if self.light {
+                added = Some(write_light(path, &source.sequence, &target.sequence, &result)?);
+            } else {
+                output::write_glb(path, &moved, &vec![0; moved.faces().len()], &[])?;
+            }
         }
         if let Some(path) = &self.report {
-            let report = report(&source, &target, &pairs, &parameters, &result, errors.as_ref(), [reading, blending]);
+            let mut report =
+                report(&source, &target, &pairs, &parameters, &result, errors.as_ref(), [reading, blending]);
+            if let (Some([rms, largest]), Some(report)) = (added, report.as_object_mut()) {
+                report.insert("light".into(), json!({ "rms": rms, "largest": largest }));
+            }
             output::write_report(path, &report)?;
         }
         print(&source, &target, &pairs, &result, errors.as_ref());
+        if let Some([rms, largest]) = added {
+            say(format_args!(
+                "  the skin in the file adds {:.2} % of the diagonal, at most {:.2} %",
+                100.0 * rms,
+                100.0 * largest
+            ));
+        }
         Ok(())
     }
 
     fn parameters(&self) -> Parameters {
         let default = Parameters::default();
-        // There is one family so far.
-        let MethodArgument::Biharmonic = self.method;
         Parameters {
-            method: match self.variant {
-                Variant::Default => default.method,
-                Variant::Direct => Method::Direct,
-                Variant::Relative => Method::Relative,
+            method: match (self.method, self.variant) {
+                (MethodArgument::Gradients, _) => Method::Gradients,
+                (MethodArgument::Posed, _) => Method::Posed,
+                (MethodArgument::Biharmonic, Variant::Default) => default.method,
+                (MethodArgument::Biharmonic, Variant::Direct) => Method::Direct,
+                (MethodArgument::Biharmonic, Variant::Relative) => Method::Relative,
             },
+            pinned: self.pin.clone(),
             bones: self.bones.map_or(default.bones, |bones| bones as usize),
+            ..default
         }
     }
 }
@@ -122,15 +166,10 @@ fn mesh(paths: &[PathBuf]) -> Result<Imported, Refusal> {
         }
     };
     let files = paths.iter().map(read).collect::<Result<Vec<_>, _>>()?;
-    Ok(open_in_order(&files, &Options { weld: false, ..Options::default() })?)
-}
-
-fn pairs(path: &Path) -> Result<Vec<Pair>, Refusal> {
-    let name = path.display();
-    let text = std::fs::read_to_string(path).map_err(|error| Refusal(format!("{name} cannot be read: {error}")))?;
-    serde_json::from_str(&text).map_err(|error| {
-        Refusal(format!("{name} is no list of pairs such as [{{\"source\": 12, \"target\": 34}}]: {error}"))
-    })
+    let mut mesh = open_in_order(&files, &Options { weld: false, ..Options::default() })?;
+    // A target stands still, as it should.
+    mesh.warnings.retain(|warning| warning.code != "no-animation");
+    Ok(mesh)
 }
 
 /// The target with the poses of the source.
@@ -154,6 +193,12 @@ struct Errors {
     of_poses: Vec<f64>,
     /// The share of vertices and poses within each of [`BOUNDS`].
     within: Vec<f64>,
+}
+
+impl Errors {
+    fn json(&self) -> Value {
+        json!({ "mean": self.mean, "of_poses": self.of_poses, "bounds": BOUNDS, "within": self.within })
+    }
 }
 
 /// The truth's files: those of a folder in natural order, without its reference pose.
@@ -206,6 +251,24 @@ fn distances(found: &[DVec3], truth: &[DVec3], radius: f64) -> Vec<f64> {
     let off: Vec<DVec3> = found.iter().zip(truth).map(|(a, b)| (*a - *b) / radius).collect();
     let mean = off.iter().sum::<DVec3>() / off.len().max(1) as f64;
     off.into_iter().map(|d| (d - mean).length()).collect()
+}
+
+/// The moving target as a skin over its handles; the root mean square and the largest error that this form adds, over the
+/// diagonal.
+fn write_light(path: &Path, source: &Sequence, target: &Sequence, result: &Result_) -> Result<[f64; 2], Refusal> {
+    let poses = source.poses().iter().zip(&result.skin.maps);
+    let poses: Vec<SkinPose> = poses.map(|(pose, maps)| SkinPose { name: &pose.name, time: pose.time, maps }).collect();
+    let skin = Skin {
+        name: target.name(),
+        faces: target.faces(),
+        reference: target.reference(),
+        weights: &result.skin.dense(),
+        handles: result.skin.handles.len(),
+        poses: &poses,
+    };
+    let light = light(&skin, Influences::Four)?;
+    output::write(path, &light.bytes)?;
+    Ok([light.rms, light.largest])
 }
 
 /// One OBJ a pose. Where faces were cut from polygons, the polygons are put together again.
@@ -280,14 +343,6 @@ fn report(
     let total = reading + blending + result.seconds.iter().map(|(_, time)| time).sum::<f64>();
     seconds.insert("total".into(), json!(total));
     let warnings: Vec<_> = source.warnings.iter().chain(&target.warnings).chain(&result.warnings).collect();
-    let truth = errors.map(|errors| {
-        json!({
-            "mean": errors.mean,
-            "of_poses": errors.of_poses,
-            "bounds": BOUNDS,
-            "within": errors.within,
-        })
-    });
     json!({
         "source": source.sequence.name(),
         "target": target.sequence.name(),
@@ -304,7 +359,7 @@ fn report(
         "size": result.alignment.size,
         "turn": result.alignment.turn.to_cols_array_2d(),
         "seconds": seconds,
-        "error": truth,
+        "error": errors.map(Errors::json),
         "warnings": warnings,
     })
 }

@@ -4,6 +4,7 @@ use super::Engine;
 use super::sequences::{describe, kept_sequence, rounded};
 use super::values::{Reply, parsed, plain, put, read_files, sentence, single};
 use crate::import::{self, Options};
+use crate::memory::Step;
 use crate::sequence::Sequence;
 use crate::transfer::propose::Proposer;
 use crate::weights::{Biharmonic, Parameters};
@@ -70,7 +71,10 @@ impl Engine {
         let target = self.open_target()?;
         let field = match retained {
             Some(field) => field,
-            None => Biharmonic::new(target.faces(), target.reference()).map_err(sentence)?,
+            None => {
+                self.room_for(Step::Weights(handles.len()), target)?;
+                Biharmonic::new(target.faces(), target.reference()).map_err(sentence)?
+            }
         };
         let weights = field.weights(handles, &Parameters::default()).map_err(sentence)?;
         self.target_field = Some(field);

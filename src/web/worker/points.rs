@@ -3,10 +3,12 @@
 use super::Engine;
 use super::values::{Reply, parsed, plain, put, sentence, single};
 use super::watcher;
-use crate::keypoints::{self, KeyPoints, Parameters};
+use crate::keypoints::{self, KeyPoints, Parameters, Rounds};
+use crate::memory::Step;
 use crate::skinning::Fit;
 use crate::weights::Weights;
-use js_sys::{Array, Float64Array, Function, Object, Uint32Array};
+use glam::DAffine3;
+use js_sys::{Array, Float32Array, Float64Array, Function, Object, Uint32Array};
 use wasm_bindgen::prelude::*;
 
 #[wasm_bindgen]
@@ -14,8 +16,9 @@ impl Engine {
     /// Finds the key points of what is open, with [`Parameters`] in their serde form.
     pub fn keypoints(&self, parameters: JsValue, progress: &Function) -> Reply {
         let parameters: Parameters = parsed(parameters)?;
+        self.room_for(Step::KeyPoints(parameters.points.unwrap_or(parameters.max)), self.open_sequence()?)?;
         let found = keypoints::select(self.open_sequence()?, &parameters, &mut watcher(progress)).map_err(sentence)?;
-        let reply = describe(&found.weights, &found.groups, &found.fits)?;
+        let reply = describe(&found.weights, &found.groups, &found.fits, &found.rounds)?;
         put(&reply, "key_points", &Uint32Array::from(found.key_points.as_slice()))?;
         put(&reply, "errors", &Float64Array::from(found.errors.as_slice()))?;
         put(&reply, "candidates", &Uint32Array::from(found.candidates.as_slice()))?;
@@ -29,20 +32,35 @@ impl Engine {
     /// What follows from points given by hand: weights, groups, the error.
     pub fn fit(&self, points: &[u32], parameters: JsValue) -> Reply {
         let parameters: Parameters = parsed(parameters)?;
+        self.room_for(Step::KeyPoints(points.len()), self.open_sequence()?)?;
         let fitted = keypoints::fit_all(self.open_sequence()?, points, &parameters).map_err(sentence)?;
-        let reply = describe(&fitted.weights, &fitted.groups, &fitted.fits)?;
+        let reply = describe(&fitted.weights, &fitted.groups, &fitted.fits, &fitted.rounds)?;
         put(&reply, "error", &fitted.error.into())?;
         Ok(reply)
     }
 }
 
-fn describe(weights: &Weights, groups: &[u32], fits: &[Fit]) -> Reply {
+fn describe(weights: &Weights, groups: &[u32], fits: &[Fit], rounds: &[Rounds]) -> Reply {
     let reply: JsValue = Object::new().into();
     put(&reply, "weights", &single(&weights.values))?;
     put(&reply, "groups", &Uint32Array::from(groups))?;
     let energies: Array = fits.iter().map(|fit| Float64Array::from(fit.energies.as_slice())).collect();
     put(&reply, "energies", &energies)?;
+    let fit_errors: Vec<f64> = fits.iter().map(|fit| fit.error).collect();
+    put(&reply, "fit_errors", &Float64Array::from(fit_errors.as_slice()))?;
+    let rounds: Array = rounds.iter().map(|rounds| Float32Array::from(matrices(rounds).as_slice())).collect();
+    put(&reply, "rounds", &rounds)?;
     Ok(reply)
+}
+
+/// Twelve numbers for each round and map: a 3×4 matrix, row by row.
+fn matrices(rounds: &Rounds) -> Vec<f32> {
+    let rows = |map: &DAffine3| {
+        let linear = map.matrix3.transpose().to_cols_array_2d();
+        let shift = map.translation.to_array();
+        [0, 1, 2].map(|r| [linear[r][0], linear[r][1], linear[r][2], shift[r]].map(|x| x as f32))
+    };
+    rounds.iter().flatten().flat_map(|map| rows(map).into_iter().flatten()).collect()
 }
 
 fn steps(found: &KeyPoints) -> Reply {

@@ -2,10 +2,11 @@
 
 use super::values::{Reply, coordinates, field, parsed, plain, points, put, sentence, triples};
 use crate::import::Clip;
+use crate::mesh::doctor::{Diagnosis, Finding};
 use crate::sequence::{Pose, Sequence, Sizes};
 use crate::warning::Warning;
 use glam::DVec3;
-use js_sys::{Float32Array, Float64Array, Uint32Array};
+use js_sys::{Array, Float32Array, Float64Array, Object, Uint32Array};
 use serde::{Deserialize, Serialize};
 use wasm_bindgen::prelude::*;
 
@@ -68,6 +69,21 @@ pub fn describe(sequence: &Sequence, clips: &[Clip], clip: Option<usize>, warnin
     if let Some(polygons) = sequence.polygons() {
         put(&reply, "polygons", &Uint32Array::from(polygons))?;
     }
+    put(&reply, "diagnosis", &diagnosis(&Diagnosis::of(sequence, warnings))?)?;
+    Ok(reply)
+}
+
+/// A diagnosis, the faces of its findings as typed arrays.
+fn diagnosis(diagnosis: &Diagnosis) -> Reply {
+    let reply: JsValue = Object::new().into();
+    put(&reply, "summary", &diagnosis.summary.as_str().into())?;
+    let findings = Array::new();
+    for finding in &diagnosis.findings {
+        let item = plain(&Finding { faces: Vec::new(), ..finding.clone() })?;
+        put(&item, "faces", &Uint32Array::from(finding.faces.as_slice()))?;
+        findings.push(&item);
+    }
+    put(&reply, "findings", &findings)?;
     Ok(reply)
 }
 

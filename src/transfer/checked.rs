@@ -1,0 +1,52 @@
+//! Pairs as people give them.
+
+use super::surface::Surface;
+use super::{Pair, TransferError};
+use crate::warning::Warning;
+use std::collections::BTreeMap;
+
+/// The pairs as places of the source and of the target, without repetitions; what was left out or is scarce goes to the
+/// warnings.
+pub fn checked(
+    source: &Surface,
+    target: &Surface,
+    pairs: &[Pair],
+    warnings: &mut Vec<Warning>,
+) -> Result<Vec<[u32; 2]>, TransferError> {
+    if pairs.is_empty() {
+        return Err(TransferError::NoPairs);
+    }
+    let mut kept: Vec<[u32; 2]> = Vec::with_capacity(pairs.len());
+    let mut seen = [BTreeMap::new(), BTreeMap::new()];
+    for (number, pair) in pairs.iter().enumerate() {
+        let place = |side: &'static str, surface: &Surface, vertex: u32| match surface.place.get(vertex as usize) {
+            Some(&place) => Ok(place),
+            None => Err(TransferError::OutOfRange { pair: number, side, vertex, vertices: surface.place.len() }),
+        };
+        let places = [place("source", source, pair.source)?, place("target", target, pair.target)?];
+        let before = [0, 1].map(|side| seen[side].get(&places[side]).copied());
+        match before {
+            [None, None] => {
+                seen[0].insert(places[0], number);
+                seen[1].insert(places[1], number);
+                kept.push(places);
+            }
+            [Some(first), Some(same)] if first == same => {
+                warnings.push(Warning::new(
+                    "repeated-pair",
+                    format!("pair {number} repeats pair {first} and was left out"),
+                ));
+            }
+            [Some(first), _] => return Err(TransferError::SamePlace { first, second: number, side: "source" }),
+            [None, Some(first)] => return Err(TransferError::SamePlace { first, second: number, side: "target" }),
+        }
+    }
+    if kept.len() < 4 {
+        let count = if kept.len() == 1 { "one pair".to_owned() } else { format!("{} pairs", kept.len()) };
+        warnings.push(Warning::new(
+            "few-pairs",
+            format!("with {count} only, much is guessed; about a dozen tell where everything is"),
+        ));
+    }
+    Ok(kept)
+}

@@ -1,0 +1,258 @@
+//! One source and one target, ready for any pairs.
+
+use super::carry::{Scene, carry};
+use super::operator::gradients;
+use crate::clock;
+use crate::linalg::cholesky::NotPositiveDefinite;
+use crate::mesh::bvh::Bvh;
+use crate::observer::Observer;
+use crate::segmentation;
+use crate::sequence::Sequence;
+use crate::transfer::alignment::{Alignment, align};
+use crate::transfer::checked::checked;
+use crate::transfer::correspondence::{Correspondence, Fit, Quality};
+use crate::transfer::posed::{Posture, posture};
+use crate::transfer::surface::Surface;
+use crate::transfer::{Method, Pair, Parameters, TransferError};
+use crate::warning::Warning;
+use glam::DVec3;
+
+/// Below this coverage a person is told that the fit is poor.
+const POOR: f64 = 0.9;
+/// The target is turned into the source's posture so often, each time with the correspondence of the time before.
+const TURNS: usize = 3;
+
+/// A source in motion and a target.
+pub struct Mover {
+    parameters: Parameters,
+    source: Surface,
+    target: Surface,
+    poses: Vec<Vec<DVec3>>,
+    /// #F part numbers of the source's faces; empty where parts are not needed.
+    parts: Vec<u32>,
+    seconds: Vec<(&'static str, f64)>,
+}
+
+/// The source bent into the target.
+#[derive(Clone, Debug, Default)]
+pub struct Bent {
+    /// After each round #V positions of the source's vertices, in the target's own frame and scale. By [`Method::Posed`] of
+    /// the last time that it was bent, into the target in the source's posture.
+    pub shapes: Vec<Vec<DVec3>>,
+    /// How well it covers the target.
+    pub quality: Quality,
+}
+
+/// The target in motion.
+#[derive(Clone, Debug)]
+pub struct Moved {
+    /// For each pose of the source #V positions of the target's vertices, in its own frame and scale.
+    pub poses: Vec<Vec<DVec3>>,
+    /// The source bent into the target.
+    pub bent: Bent,
+    /// How the target as a whole lies to the source, both in their unit balls.
+    pub alignment: Alignment,
+    /// The number of parts that were turned into the source's posture (0 by [`Method::Gradients`]).
+    pub parts: usize,
+    /// What a person should know.
+    pub warnings: Vec<Warning>,
+    /// Seconds by step.
+    pub seconds: Vec<(&'static str, f64)>,
+}
+
+/// Seconds by step, and the observer asked at each.
+struct Steps<'a> {
+    observer: &'a mut dyn Observer,
+    seconds: Vec<(&'static str, f64)>,
+    started: f64,
+    cancelled: bool,
+}
+
+impl<'a> Steps<'a> {
+    fn new(observer: &'a mut dyn Observer) -> Self {
+        Self { observer, seconds: Vec::new(), started: clock::seconds(), cancelled: false }
+    }
+
+    fn at(&mut self, step: &'static str, done: f64) -> bool {
+        self.cancelled |= !self.observer.progress(step, done);
+        !self.cancelled
+    }
+
+    /// Ends a step that brought the whole to `done`.
+    fn end(&mut self, step: &'static str, done: f64) -> Result<(), TransferError> {
+        let now = clock::seconds();
+        match self.seconds.iter_mut().find(|entry| entry.0 == step) {
+            Some(entry) => entry.1 += now - self.started,
+            None => self.seconds.push((step, now - self.started)),
+        }
+        self.started = now;
+        if self.at(step, done) { Ok(()) } else { Err(TransferError::Cancelled) }
+    }
+}
+
+impl Mover {
+    /// Prepares a source, all of it, and the reference pose of a target.
+    pub fn new(
+        source: &Sequence,
+        target: &Sequence,
+        parameters: &Parameters,
+        observer: &mut dyn Observer,
+    ) -> Result<Self, TransferError> {
+        let mut steps = Steps::new(observer);
+        let still = target.reference_alone();
+        let [here, there] = [(source, "source"), (&still, "target")].map(|(sequence, side)| {
+            let surface = Surface::new(sequence);
+            if surface.faces.is_empty() { Err(TransferError::NoFaces { side }) } else { Ok(surface) }
+        });
+        let (here, there) = (here?, there?);
+        if gradients(&here).iter().all(Option::is_none) {
+            return Err(TransferError::Degenerate { side: "source" });
+        }
+        let poses: Vec<Vec<DVec3>> = source.poses().iter().map(|pose| here.unit(&pose.positions)).collect();
+        steps.end("surfaces", 0.5)?;
+        let parts = if parameters.method == Method::Posed {
+            parts_of(source, &here, &mut |stage: &'static str, done: f64| steps.at(stage, 0.5 + 0.5 * done))?
+        } else {
+            Vec::new()
+        };
+        steps.end("parts", 1.0)?;
+        Ok(Self { parameters: parameters.clone(), source: here, target: there, poses, parts, seconds: steps.seconds })
+    }
+
+    /// Seconds of the steps of the preparation.
+    pub fn seconds(&self) -> &[(&'static str, f64)] {
+        &self.seconds
+    }
+
+    /// Transfers all poses by the given pairs.
+    pub fn transfer(&self, pairs: &[Pair], observer: &mut dyn Observer) -> Result<Moved, TransferError> {
+        let mut steps = Steps::new(observer);
+        let mut warnings = Vec::new();
+        let markers = checked(&self.source, &self.target, pairs, &mut warnings)?;
+        let place = |&vertex: &u32| self.target.place.get(vertex as usize).copied();
+        let mut pins: Vec<u32> = self.parameters.pinned.iter().filter_map(place).collect();
+        if pins.len() < self.parameters.pinned.len() {
+            warnings.push(Warning::new("no-such-pin", "some pinned vertices do not exist on the target".to_owned()));
+        }
+        pins.sort_unstable();
+        pins.dedup();
+        let points: Vec<(DVec3, DVec3)> = markers
+            .iter()
+            .map(|&[here, there]| (self.source.positions[here as usize], self.target.positions[there as usize]))
+            .collect();
+        let alignment = align(&points);
+        let posed = self.parameters.method == Method::Posed;
+        let rounds = if posed { TURNS } else { 0 };
+        let share = |round: usize, done: f64| 0.8 * (round as f64 + done) / (rounds + 1) as f64;
+        let mut posture = Posture::unturned(&self.target);
+        let (mut correspondence, mut shapes) = self
+            .correspond(alignment, &markers, &posture.positions, |done| steps.at("correspondence", share(0, done)))?;
+        steps.end("correspondence", share(0, 1.0))?;
+        for round in 1..=rounds {
+            posture = self.posture(&correspondence, alignment)?;
+            steps.end("posture", share(round, 0.0))?;
+            (correspondence, shapes) = self.correspond(alignment, &markers, &posture.positions, |done| {
+                steps.at("correspondence", share(round, done))
+            })?;
+            steps.end("correspondence", share(round, 1.0))?;
+        }
+        let scene = Scene {
+            source: &self.source,
+            poses: &self.poses,
+            target: &self.target,
+            alignment,
+            correspondence: &correspondence,
+            turns: &posture.turns,
+            turned: &posture.positions,
+            pins: &pins,
+            doubt: self.parameters.doubt.max(0.0),
+        };
+        let poses = carry(&scene).map_err(degenerate)?;
+        steps.end("poses", 1.0)?;
+        if correspondence.quality.coverage < POOR {
+            warnings.push(Warning::new(
+                "poor-fit",
+                format!(
+                    "bent into the target by these pairs, the source covers {:.0} % of it only; more pairs help, at the tips \
+                     of limbs and where they part",
+                    100.0 * correspondence.quality.coverage
+                ),
+            ));
+        }
+        Ok(Moved {
+            poses: poses.iter().map(|pose| self.outward(&self.target, pose)).collect(),
+            bent: Bent {
+                shapes: shapes.iter().map(|shape| self.outward(&self.source, shape)).collect(),
+                quality: correspondence.quality,
+            },
+            alignment,
+            parts: posture.parts,
+            warnings,
+            seconds: steps.seconds,
+        })
+    }
+
+    /// Bends the source into the target at `positions` (#N) and pairs their faces; all shapes on the way.
+    fn correspond(
+        &self,
+        alignment: Alignment,
+        markers: &[[u32; 2]],
+        positions: &[DVec3],
+        mut progress: impl FnMut(f64) -> bool,
+    ) -> Result<(Correspondence, Vec<Vec<DVec3>>), TransferError> {
+        let target = self.target.bent(positions.to_vec());
+        let rest: Vec<DVec3> = self.source.positions.iter().map(|&p| alignment.apply(p)).collect();
+        let markers: Vec<(u32, DVec3)> =
+            markers.iter().map(|&[here, there]| (here, target.positions[there as usize])).collect();
+        let fitting = &self.parameters.fitting;
+        let fit = Fit::new(&self.source, rest.clone(), &markers, fitting).map_err(degenerate_source)?;
+        let tree = Bvh::new(&target.faces, &target.positions);
+        let mut shapes = vec![rest];
+        let mut going = true;
+        let bent = fit
+            .bend(&target, &tree, fitting, |shape, done| {
+                shapes.push(shape.to_vec());
+                going = progress(0.9 * done);
+                going
+            })
+            .map_err(degenerate_source)?;
+        if !going {
+            return Err(TransferError::Cancelled);
+        }
+        let sound: Vec<bool> = gradients(&self.source).iter().map(Option::is_some).collect();
+        Ok((Correspondence::new(&self.source, &bent, &sound, &target, &tree), shapes))
+    }
+
+    fn posture(&self, correspondence: &Correspondence, alignment: Alignment) -> Result<Posture, TransferError> {
+        posture(&self.source, &self.parts, &self.target, correspondence, alignment).map_err(degenerate)
+    }
+
+    /// #V positions in the target's units of the given vertices of a surface, of #N in the target's unit ball.
+    fn outward(&self, surface: &Surface, positions: &[DVec3]) -> Vec<DVec3> {
+        let Surface { centre, radius, .. } = self.target;
+        surface.place.iter().map(|&place| radius * positions[place as usize] + centre).collect()
+    }
+}
+
+fn degenerate(_: NotPositiveDefinite) -> TransferError {
+    TransferError::Degenerate { side: "target" }
+}
+
+fn degenerate_source(_: NotPositiveDefinite) -> TransferError {
+    TransferError::Degenerate { side: "source" }
+}
+
+/// #F part numbers of the faces of a sequence's surface, by the segmentation.
+fn parts_of(source: &Sequence, surface: &Surface, observer: &mut dyn Observer) -> Result<Vec<u32>, TransferError> {
+    let parts = segmentation::segment(source, &segmentation::Parameters::default(), observer);
+    let labels = match parts {
+        Ok(parts) => parts.labels,
+        Err(segmentation::SegmentationError::Cancelled) => return Err(TransferError::Cancelled),
+        Err(_) => return Err(TransferError::Degenerate { side: "source" }),
+    };
+    let kept = |face: &[u32; 3]| {
+        let [a, b, c] = face.map(|v| surface.place[v as usize]);
+        a != b && b != c && c != a
+    };
+    Ok(source.faces().iter().zip(labels).filter(|(face, _)| kept(face)).map(|(_, label)| label).collect())
+}

@@ -1,0 +1,211 @@
+//! Stages, lessons and tours.
+
+use crate::harness::{Backend, Page, Screen};
+use crate::opening::opened;
+use serde_json::{Value, json};
+
+const SMALL: &str = "#v1;zoo=horse;faces=3000;poses=8;k.points=6;t=reference";
+const IDLE: &str = "!sinew.state().busy && sinew.state().drawn";
+
+/// Lets the engine count what it is asked, and the page how long it takes to answer.
+const WATCH: &str = "window.asked = 0; const call = sinew.app.engine.call.bind(sinew.app.engine);
+    sinew.app.engine.call = (...message) => { window.asked++; return call(...message); }; undefined";
+
+fn key_points(page: &mut Page) {
+    page.click("#step-keypoints");
+    page.wait_until(&format!("sinew.app.keypoints.current?.rounds?.length === 8 && {IDLE}"), 60.0);
+}
+
+/// Goes to the first view of the step.
+fn first(page: &mut Page, view: &str) {
+    page.evaluate(&format!("sinew.app.setView('{view}'); sinew.app.setPlace(0); document.activeElement.blur()"));
+    page.wait_until(&format!("sinew.state().view === '{view}' && sinew.state().place === 0"), 2.0);
+}
+
+/// Presses → until the end and ← back to the beginning; returns the views on the way.
+fn walked(page: &mut Page) -> Vec<String> {
+    let mut views: Vec<String> = Vec::new();
+    for (key, most) in [("ArrowRight", 900), ("ArrowLeft", 900)] {
+        let mut before = Value::Null;
+        for _ in 0..most {
+            let now = page.evaluate("[sinew.app.view, sinew.app.place]");
+            if now == before {
+                break;
+            }
+            let view = now[0].as_str().unwrap_or_default().to_owned();
+            if views.last() != Some(&view) {
+                views.push(view);
+                // The middle of a long stage is as good as all of it: go near its end, as a hand would with the scrubber.
+                page.evaluate(&format!(
+                    "(() => {{ const range = document.querySelector('#stage-place');
+                    if (range.closest('.off')) return;
+                    range.value = {}; range.dispatchEvent(new Event('input', {{ bubbles: true }})); }})()",
+                    if key == "ArrowRight" { "Math.max(0, range.max - 1)" } else { "1" }
+                ));
+                page.evaluate("document.activeElement.blur()");
+            }
+            before = page.evaluate("[sinew.app.view, sinew.app.place]");
+            page.press(key);
+        }
+    }
+    views
+}
+
+#[test]
+#[ignore = "drives the built page in Chromium: run by `cargo xtask test`"]
+fn every_stage_is_walked_through_and_nothing_is_computed_again() {
+    let mut page = opened(Backend::WebGl2, Screen::Small, SMALL);
+    page.evaluate(WATCH);
+    first(&mut page, "gradients");
+    let there = [
+        "gradients",
+        "deformation",
+        "dual",
+        "sets",
+        "distance",
+        "features",
+        "clusters",
+        "merging",
+        "unsmoothed",
+        "cut",
+        "parts",
+    ];
+    let back =
+        |list: &[&str]| list.iter().chain(list.iter().rev().skip(1)).map(|&view| view.to_owned()).collect::<Vec<_>>();
+    assert_eq!(walked(&mut page), back(&there));
+    assert_eq!(page.evaluate("window.asked"), 0, "the engine was asked");
+    key_points(&mut page);
+    page.evaluate("window.asked = 0");
+    first(&mut page, "spread");
+    let there = ["spread", "candidates", "replacement", "weights", "groups", "alternation", "points"];
+    assert_eq!(walked(&mut page), back(&there));
+    assert_eq!(page.evaluate("window.asked"), 0, "the engine was asked");
+    assert_eq!(page.state()["error"], Value::Null);
+}
+
+#[test]
+#[ignore = "drives the built page in Chromium: run by `cargo xtask test`"]
+fn scrubbing_shows_other_pictures_at_once() {
+    let mut page = opened(Backend::WebGl2, Screen::Small, SMALL);
+    page.evaluate("sinew.app.setView('merging')");
+    let mut last = None;
+    for place in [0, 120, 230] {
+        let milliseconds = page.evaluate(&format!(
+            "(() => {{ const begun = performance.now(); sinew.app.setPlace({place}); return performance.now() - begun; }})()"
+        ));
+        assert!(milliseconds.as_f64().is_some_and(|time| time < 100.0), "place {place} took {milliseconds} ms");
+        page.wait_until(IDLE, 10.0);
+        let picture = page.picture_of("#stage canvas", "merging");
+        assert!(
+            last.is_none_or(|last| picture.difference(&last, 6) > 0.002),
+            "place {place} looks like the one before"
+        );
+        last = Some(picture);
+    }
+    // By the merge tree in the page there are as many parts as by the engine.
+    let parts = page.state()["parts"].as_u64().unwrap_or(0);
+    page.evaluate("delete sinew.app.places.merging; sinew.app.paint(); sinew.app.changed('place')");
+    let words = page.evaluate("document.querySelector('.strip output').textContent");
+    assert!(words.as_str().is_some_and(|words| words.contains(&format!("{parts} part"))), "{words} for {parts} parts");
+    key_points(&mut page);
+    page.evaluate("sinew.app.setView('alternation'); sinew.app.setPlace(0)");
+    page.wait_until(&format!("sinew.app.stage.skin && {IDLE}"), 10.0);
+    let begun = page.picture_of("#stage canvas", "fit-first");
+    page.evaluate("sinew.app.setPlace(1000)");
+    page.wait_until(IDLE, 10.0);
+    let ended = page.picture_of("#stage canvas", "fit-last");
+    assert!(ended.difference(&begun, 6) > 0.01, "the fit does not close in");
+    page.evaluate("sinew.app.setView('points')");
+    page.wait_until(&format!("!sinew.app.stage.skin && sinew.app.frozen === null && {IDLE}"), 5.0);
+}
+
+#[test]
+#[ignore = "drives the built page in Chromium: run by `cargo xtask test`"]
+fn a_face_is_chosen_with_a_click_and_its_lesson_speaks_of_it() {
+    let mut page = opened(Backend::WebGl2, Screen::Small, &format!("{SMALL};view=gradients;lesson=open"));
+    page.wait_until("document.querySelector('.lesson .matrix')", 5.0);
+    let before = page.evaluate("document.querySelector('.lesson-control').innerText");
+    assert_eq!(page.evaluate("document.querySelectorAll('.overlay .axis').length"), 6);
+    // The trunk, away from the panel and the strip.
+    let (x, y) = (0.42, 0.36);
+    let [width, height] = [960.0, 640.0];
+    page.drag_from((x * width, y * height), (0.0, 0.0));
+    page.wait_until("sinew.app.face >= 0", 2.0);
+    let after = page.evaluate("document.querySelector('.lesson-control').innerText");
+    assert_ne!(before, after);
+    // In the reference nothing is deformed: the matrix is the identity.
+    assert!(after.as_str().is_some_and(|text| text.contains("turns by 0°") && text.contains("1.00")), "{after}");
+    page.evaluate("sinew.app.timeline.seek(3)");
+    page.wait_until("document.querySelector('.lesson-control').innerText.includes('pose 4')", 3.0);
+    page.evaluate("sinew.app.setView('dual')");
+    page.wait_until("document.querySelectorAll('.overlay .link').length > 10", 3.0);
+    page.evaluate("sinew.app.setView('parts')");
+    page.wait_until("document.querySelectorAll('.overlay line').length === 0", 3.0);
+}
+
+#[test]
+#[ignore = "drives the built page in Chromium: run by `cargo xtask test`"]
+fn every_stage_has_a_lesson() {
+    let mut page = opened(Backend::WebGl2, Screen::Small, &format!("{SMALL};lesson=open"));
+    let lessons = page.evaluate(
+        "(async () => { const { STEPS } = await import(new URL('www/steps/index.js', location.href));
+        const views = STEPS.filter(({ id }) => ['parts', 'keypoints'].includes(id)).flatMap(({ views }) => views.map(({ id }) => id));
+        return Promise.all(views.map(async (id) => { const answer = await fetch(`www/lessons/stages/${id}.html`);
+            const page = new DOMParser().parseFromString(await answer.text(), 'text/html');
+            return [id, answer.ok, page.querySelector('h3')?.textContent.length > 10, Boolean(page.querySelector('math')),
+                page.querySelector('.try')?.textContent.length > 20, page.querySelector('.note-printed')?.textContent.length > 40]; })); })()",
+    );
+    let lessons = lessons.as_array().cloned().unwrap_or_default();
+    assert_eq!(lessons.len(), 18);
+    for lesson in lessons {
+        assert_eq!(
+            lesson.as_array().map(|list| &list[1..]),
+            Some(&[json!(true), json!(true), json!(true), json!(true), json!(true)][..]),
+            "{lesson}"
+        );
+    }
+    // ε is dragged beside its equation.
+    page.evaluate("sinew.app.setView('sets')");
+    page.wait_until("document.querySelector('.lesson .plot.draggable')", 3.0);
+    let before = page.evaluate("sinew.app.result.epsilon").as_f64().unwrap_or(f64::NAN);
+    page.drag(".lesson .plot.draggable", (30.0, 0.0));
+    page.wait_until(&format!("sinew.app.changes.epsilon && sinew.app.result.epsilon !== {before} && {IDLE}"), 10.0);
+}
+
+#[test]
+#[ignore = "drives the built page in Chromium: run by `cargo xtask test`"]
+fn tours_are_permalinks_and_lead_to_their_ends() {
+    let mut page = opened(Backend::WebGl2, Screen::Small, SMALL);
+    let tours = page.evaluate(
+        "import(new URL('www/tours.js', location.href)).then(({ TOURS }) => TOURS.map(({ id, stops }) => [id, stops.length]))",
+    );
+    let tours = tours.as_array().cloned().unwrap_or_default();
+    assert_eq!(tours.len(), 5);
+    for tour in &tours {
+        let (id, stops) = (tour[0].as_str().unwrap_or_default(), tour[1].as_u64().unwrap_or(0));
+        page.evaluate(&format!("sinew.app.guide.begin('{id}').then(() => 0)"));
+        page.wait_until("sinew.state().parts && !sinew.state().busy", 60.0);
+        for stop in 0..stops {
+            assert_eq!(page.state()["tour"], json!([id, stop]), "{id}");
+            let text = page.evaluate("document.querySelector('.tour p[aria-live]').textContent.length");
+            assert!(text.as_u64().is_some_and(|length| length > 60), "{id} {stop}");
+            if stop + 1 < stops {
+                page.evaluate("document.querySelector('#tour-next').click()");
+            }
+        }
+        page.wait_until("!sinew.state().busy", 60.0);
+        assert_eq!(page.state()["error"], Value::Null, "{id}");
+        page.rest(0.6);
+        let hash = page.evaluate("location.hash");
+        assert!(
+            hash.as_str().is_some_and(|hash| hash.contains(&format!("tour={id}.{}", stops - 1)) && hash.len() < 2000),
+            "{hash}"
+        );
+    }
+    // A link to a stop, with nothing else in it.
+    page.go("?again#v1;tour=joints.3");
+    page.wait_until("location.search === '?again' && sinew.ready && sinew.state().tour && sinew.state().view === 'cut' && sinew.state().place === 0", 30.0);
+    assert_eq!(page.state()["source"]["name"], "dinosaur");
+    page.click("#tour-leave");
+    page.wait_until("!sinew.state().tour", 2.0);
+}

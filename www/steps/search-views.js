@@ -1,0 +1,153 @@
+/** The stages of the search for key points: candidates, the greedy choice, replacement. See views.js for what a view is. */
+import { number, plural } from '../format.js';
+import { MARK } from './paint.js';
+
+const ERROR = 'cividis';
+
+/** Both figures, or the one there is, in clay. */
+export function clay({ stage, second }) {
+  for (const figure of [stage, second]) {
+    if (!figure) continue;
+    figure.boundaries = false;
+    figure.paint(['paint_clay']);
+  }
+}
+
+/** Points that were not searched for have no history. */
+const unknown = { kind: 'words', text: 'These points were not searched for here: find them to see how.' };
+
+export const spread = {
+  id: 'spread',
+  label: 'Candidates',
+  title: 'Candidates, each as far over the surface as can be from those before it (§3.1)',
+  name: 'Candidate',
+  count: ({ doc: { run } }) => run?.candidates.length ?? 1,
+  first: ({ doc: { run } }) => (run?.candidates.length ?? 1) - 1,
+  where: ({ doc: { run } }, index) => (run ? `vertex ${run.candidates[index]}` : ''),
+  paint(app, index) {
+    clay(app);
+    const { run } = app.doc;
+    if (!run) return;
+    app.stage.mark(facesAt(app.sequence.faces, run.candidates.slice(0, index + 1)), MARK.point);
+    app.stage.mark(facesAt(app.sequence.faces, [run.candidates[index]]), MARK.newest);
+  },
+  pins: () => [],
+  legend: ({ doc: { run } }) => (run ? { kind: 'words', text: `${plural(run.candidates.length, 'candidate')}: key points are chosen among these.` } : unknown),
+};
+
+export const candidates = {
+  id: 'candidates',
+  label: 'Choice',
+  title: 'What each candidate would bring as the next point (§3.5)',
+  name: 'Step',
+  count: ({ doc: { run } }) => run?.steps.length ?? 1,
+  first: ({ doc: { run } }) => (run?.steps.length ?? 1) - 1,
+  where({ doc: { run } }, index) {
+    const step = run?.steps[index];
+    return step ? `point ${pointOf(run, index)} is vertex ${step.chosen}: error ${number(step.error, 2)}` : '';
+  },
+  paint(app, index) {
+    clay(app);
+    const { run } = app.doc;
+    const step = run?.steps[index];
+    if (!step) return;
+    const [low, high] = rangeOf(step.errors);
+    app.stage.paint(['paint_vertices', candidateField(app, run, step), low, high, ERROR]);
+    app.stage.mark(facesAt(app.sequence.faces, step.candidates), MARK.point);
+  },
+  pins: ({ doc: { run } }, index) => (run?.steps ?? []).slice(0, index + 1).map(({ chosen }, i) => ({ index: i, pin: { vertex: chosen, colour: i, selected: i === index } })),
+  legend(app) {
+    const { run } = app.doc;
+    const index = app.place;
+    const step = run?.steps[index];
+    if (!step) return run ? { kind: 'words', text: 'There was nothing to choose from.' } : unknown;
+    const [low, high] = rangeOf(step.errors);
+    return {
+      kind: 'scalar',
+      map: ERROR,
+      marks: [low, (low + high) / 2, high],
+      exact: true,
+      unit: `error with this as point ${pointOf(run, index)}, ${plural(step.candidates.length, 'candidate')} tried`,
+    };
+  },
+};
+
+/** The points before the first replacement, and after each of them. */
+function sets(run) {
+  const all = [[...run.key_points]];
+  for (const { from, to } of run.replacements.toReversed()) all.unshift(all[0].map((vertex) => (vertex === to ? from : vertex)));
+  return all;
+}
+
+export const replacement = {
+  id: 'replacement',
+  label: 'Replacement',
+  title: 'Each point may give way to a candidate that serves better now (§3.5, second stage)',
+  name: 'Replacement',
+  count: ({ doc: { run } }) => (run?.replacements.length ?? 0) + 1,
+  first: ({ doc: { run } }) => run?.replacements.length ?? 0,
+  where({ doc: { run } }, index) {
+    const swap = run?.replacements[index - 1];
+    return swap ? `vertex ${swap.from} gave way to ${swap.to}: error ${number(swap.error, 2)}` : 'as they were chosen';
+  },
+  paint(app, index) {
+    clay(app);
+    const swap = app.doc.run?.replacements[index - 1];
+    if (!swap) return;
+    app.stage.mark(facesAt(app.sequence.faces, [swap.from]), MARK.newest);
+  },
+  pins({ doc: { run } }, index) {
+    if (!run) return [];
+    const swap = run.replacements[index - 1];
+    return sets(run)[index].map((vertex, i) => ({ index: i, pin: { vertex, colour: i, selected: vertex === swap?.to } }));
+  },
+  legend: ({ doc: { run } }) => (!run ? unknown : { kind: 'words', text: run.replacements.length
+    ? `${plural(run.replacements.length, 'point')} gave way to a better one. The place that was left is marked.`
+    : 'No candidate served better than a point that was chosen.' }),
+};
+
+/** The number of the point that a step of the search added: the first has nothing to be compared with. */
+export const pointOf = (run, step) => step + 1 + Math.max(0, run.key_points.length - run.steps.length);
+
+function rangeOf(values) {
+  let [low, high] = [Infinity, -Infinity];
+  for (const value of values) if (Number.isFinite(value)) [low, high] = [Math.min(low, value), Math.max(high, value)];
+  return high > low ? [low, high] : [low || 0, (low || 0) + 1e-6];
+}
+
+const nearests = new WeakMap();
+
+/** For each vertex the candidate nearest to it, as its place in the list. */
+function nearestOf(app, run) {
+  if (!nearests.has(run)) {
+    const { reference } = app.sequence;
+    const list = [...run.candidates];
+    const owners = new Uint32Array(reference.length / 3);
+    for (let v = 0; v < owners.length; v++) {
+      let best = Infinity;
+      list.forEach((c, i) => {
+        const distance = (reference[3 * v] - reference[3 * c]) ** 2 + (reference[3 * v + 1] - reference[3 * c + 1]) ** 2
+          + (reference[3 * v + 2] - reference[3 * c + 2]) ** 2;
+        if (distance < best) [best, owners[v]] = [distance, i];
+      });
+    }
+    nearests.set(run, owners);
+  }
+  return nearests.get(run);
+}
+
+/** #V: the error of the candidate that a vertex lies nearest to; NaN where that was not tried. */
+function candidateField(app, run, step) {
+  const errors = new Map();
+  step.candidates.forEach((vertex, i) => errors.set(vertex, step.errors[i]));
+  const list = Array.from(run.candidates, (vertex) => errors.get(vertex) ?? NaN);
+  return Float32Array.from(nearestOf(app, run), (owner) => list[owner]);
+}
+
+/** The faces around some vertices. */
+function facesAt(faces, vertices) {
+  const wanted = new Set(vertices);
+  const found = [];
+  for (let i = 0; i < faces.length; i++) if (wanted.has(faces[i])) found.push(Math.floor(i / 3));
+  return Uint32Array.from(found);
+}
