@@ -17,7 +17,7 @@ const operations = {
     engine = new Engine();
     return Engine.about();
   },
-  open: ({ files, options }) => engine.open(files, options),
+  open: ({ files, still, options }) => (still ? engine.open_more(still, files, options) : engine.open(files, options)),
   zoo: ({ recipe }) => engine.zoo(recipe),
   restore: ({ kept }) => engine.restore(kept),
   segment: ({ parameters }, progress) => engine.segment(parameters, progress),

@@ -2,7 +2,7 @@
 
 use super::Engine;
 use super::sequences::{describe, kept_sequence, rounded};
-use super::values::{Reply, parsed, plain, put, read_file, sentence, single};
+use super::values::{Reply, parsed, plain, put, read_files, sentence, single};
 use crate::import::{self, Options};
 use crate::memory::Step;
 use crate::sequence::Sequence;
@@ -16,9 +16,8 @@ use wasm_bindgen::prelude::*;
 impl Engine {
     /// Opens files as the target; as [`Engine::open`].
     pub fn target(&mut self, files: &Array, options: JsValue) -> Reply {
-        let files = files.iter().map(|file| read_file(&file)).collect::<Result<Vec<_>, _>>()?;
         let options: Options = parsed(options)?;
-        let imported = import::open(&files, &options).map_err(sentence)?;
+        let imported = import::open(&read_files(files)?, &options).map_err(sentence)?;
         let sequence = rounded(&imported.sequence)?;
         let reply = describe(&sequence, &imported.clips, imported.clip, &imported.warnings)?;
         self.replace_target(Some(sequence));
