@@ -326,7 +326,6 @@ fn expected(name: &str) -> &'static [Code] {
         "into a point" => &[Code::Vanishing],
         "a flat pose" => &[Code::TurnedOver],
         "slivers" => &[Code::Slivers],
-        "a mirrored pose" => &[Code::MirroredPoses],
         "one vertex far away" => &[Code::FarVertices],
         "far from the origin" => &[Code::FarFromOrigin],
         "vertices without a face" => &[Code::UnusedVertices],
