@@ -24,7 +24,7 @@ fn scene() -> (Sequence, Sequence, Vec<Pair>) {
         return (horse, camel.reference_alone(), pairs);
     }
     let make = |name: &str, faces: usize| -> Creature {
-        let recipe = Recipe { name: name.into(), faces, poses: 10, exact: false };
+        let recipe = Recipe { name: name.into(), faces, poses: 10, exact: false, ..Recipe::default() };
         zoo::make(&recipe).expect("a creature of that name")
     };
     let (horse, camel) = (make("horse", 16_843), make("camel", 43_814));

@@ -18,6 +18,7 @@ pub mod import;
 #[cfg(feature = "solvers")]
 pub mod keypoints;
 pub mod linalg;
+pub mod memory;
 pub mod mesh;
 pub mod observer;
 pub mod segmentation;

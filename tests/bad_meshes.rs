@@ -10,6 +10,7 @@ use sinew::export::animation::{Influences, SkinPose, exact, light};
 use sinew::export::{glb, skin};
 use sinew::import::{File, Options, open};
 use sinew::keypoints;
+use sinew::mesh::doctor::{Code, Diagnosis};
 use sinew::observer::Silent;
 use sinew::segmentation::{self, Method};
 use sinew::sequence::{Pose, Sequence, SequenceError};
@@ -29,13 +30,13 @@ fn on_all(what: &str, act: impl Fn(&Sequence) -> Outcome) {
 fn on(what: &str, meshes: Vec<Sequence>, act: impl Fn(&Sequence) -> Outcome) {
     let mut wrong = Vec::new();
     for mesh in meshes {
-        let started = std::time::Instant::now();
+        let started = sinew::clock::seconds();
         match catch_unwind(AssertUnwindSafe(|| act(&mesh))) {
             Ok(Ok(())) => {}
             Ok(Err(why)) => wrong.push(format!("{}: {why}", mesh.name())),
             Err(_) => wrong.push(format!("{}: panicked", mesh.name())),
         }
-        let seconds = started.elapsed().as_secs_f64();
+        let seconds = sinew::clock::seconds() - started;
         if seconds > 0.3 {
             println!("{what}, {}: {seconds:.2} s", mesh.name());
         }
@@ -139,15 +140,13 @@ fn read_back(mesh: &Sequence, bytes: Vec<u8>) -> Outcome {
 #[test]
 fn key_points() {
     let presets = [
-        keypoints::Parameters::default(),
+        keypoints::Parameters { max: 8, ..keypoints::Parameters::default() },
         keypoints::Parameters { literal: true, candidates: 6, max: 3, ..keypoints::Parameters::default() },
         keypoints::Parameters { points: Some(9), stop: keypoints::Stop::Flat, ..keypoints::Parameters::default() },
     ];
     on_all("key points", |mesh| {
         for parameters in &presets {
-            let begun = std::time::Instant::now();
             let result = keypoints::select(mesh, parameters, &mut Silent);
-            println!("{} {:.2}", mesh.name(), begun.elapsed().as_secs_f64());
             let Some(found) = sentence(result, flat(mesh))? else { continue };
             let points = &found.key_points;
             ensure(!points.is_empty(), || "there is no key point".into())?;
@@ -291,6 +290,60 @@ fn proposals() {
         }
         Ok(())
     });
+}
+
+#[test]
+fn the_doctor() {
+    on_all("the doctor", |mesh| {
+        let diagnosis = Diagnosis::of(mesh, &[]);
+        ensure(diagnosis.summary.ends_with('.'), || "there is no summary".into())?;
+        for finding in &diagnosis.findings {
+            let faces = &finding.faces;
+            ensure(finding.count > 0, || format!("{:?} of nothing", finding.code))?;
+            ensure(faces.is_sorted_by(|a, b| a < b), || format!("{:?}: faces out of order", finding.code))?;
+            ensure(faces.last().is_none_or(|&f| (f as usize) < mesh.faces().len()), || "no such face".into())?;
+        }
+        let expected = expected(mesh.name());
+        let missing = expected.iter().find(|&&code| diagnosis.finding(code).is_none());
+        ensure(missing.is_none(), || format!("{missing:?} was not found"))
+    });
+    assert_eq!(Diagnosis::of(&healthy(), &[]).findings, []);
+}
+
+/// What the doctor has to find in a mesh.
+fn expected(name: &str) -> &'static [Code] {
+    match name {
+        "hundreds of pieces" => &[Code::Pieces, Code::StillPieces],
+        "a piece that does not move" => &[Code::Pieces, Code::StillPieces],
+        "a soup of triangles" => &[Code::Seams],
+        "a soup that flies apart" => &[Code::Pieces],
+        "holes" => &[Code::Holes],
+        "edges with five faces" => &[Code::CrowdedEdges],
+        "faces twice" => &[Code::DuplicateFaces],
+        "flipped faces" => &[Code::FlippedFaces],
+        "a band with half a turn" => &[Code::OneSided],
+        "faces without area" | "all on a line" | "all in one point" | "from a point" => &[Code::DegenerateFaces],
+        "into a point" => &[Code::Vanishing],
+        "a flat pose" => &[Code::TurnedOver],
+        "slivers" => &[Code::Slivers],
+        "one vertex far away" => &[Code::FarVertices],
+        "far from the origin" => &[Code::FarFromOrigin],
+        "vertices without a face" => &[Code::UnusedVertices],
+        "a pose that explodes" => &[Code::ExplodingPoses],
+        _ => &[],
+    }
+}
+
+#[test]
+fn a_large_mesh_is_examined_at_once() {
+    let (faces, points) = odd_meshes::grid(318);
+    let mesh = odd_meshes::sequence("large", &faces, &points, &odd_meshes::bent(&points, 12));
+    let started = sinew::clock::seconds();
+    let found = Diagnosis::of(&mesh, &[]);
+    let seconds = sinew::clock::seconds() - started;
+    println!("{} faces in {} poses: {seconds:.3} s", faces.len(), mesh.poses().len());
+    assert_eq!(found.finding(Code::Holes).map(|holes| holes.count), Some(1));
+    assert!(seconds < 5.0, "{seconds} s, on whatever machine");
 }
 
 #[test]

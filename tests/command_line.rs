@@ -1,6 +1,7 @@
 //! The command line: reports, files, and the exit status 2 with one sentence for what cannot be used.
 #![cfg(all(feature = "cli", not(target_arch = "wasm32")))]
 
+#[allow(dead_code, unused_imports)]
 mod gltf_maker;
 
 use gltf_maker::triangle;

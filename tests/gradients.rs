@@ -17,7 +17,8 @@ use sinew::transfer::{Method, Pair, Parameters, TransferError};
 use sinew::zoo::{self, Creature, Recipe};
 
 fn creature(name: &str, faces: usize) -> Creature {
-    zoo::make(&Recipe { name: name.into(), faces, poses: 8, exact: false }).expect("a creature of that name")
+    zoo::make(&Recipe { name: name.into(), faces, poses: 8, exact: false, ..Recipe::default() })
+        .expect("a creature of that name")
 }
 
 fn pairs(a: &Creature, b: &Creature, count: usize) -> Vec<Pair> {

@@ -4,6 +4,9 @@
 //! out.
 #![cfg(not(target_arch = "wasm32"))]
 
+#[path = "import/variants.rs"]
+mod variants;
+
 use sinew::import::gltf::Model;
 use sinew::import::{File, Options, Reference, Sampling, open};
 use std::io::Write;
@@ -87,42 +90,6 @@ fn poses_agree_with_three_js() {
         println!("{name}: {} vertices, off by at most {worst:.1e} of the diagonal", model.vertices());
     }
     assert!(compared >= 150, "only {compared} poses were compared");
-}
-
-/// The same animal, encoded in other ways, moves in the same way: every pose, after welding, face by face.
-#[test]
-fn variants_import_like_their_originals() {
-    let Some(data) = data() else { return };
-    let gltf = data.join("gltf");
-    for (name, original) in [
-        ("Fox", "bevy/animated/Fox.glb"),
-        ("CesiumMan", "khronos/CesiumMan/glTF-Binary/CesiumMan.glb"),
-        ("RiggedFigure", "khronos/RiggedFigure/glTF-Binary/RiggedFigure.glb"),
-    ] {
-        let ours = open(&[read(&gltf.join(original))], &Options::default()).unwrap();
-        for (variant, tolerance) in [("welded", 1e-5), ("sparse", 1e-5), ("quantized", 2e-3)] {
-            let path = gltf.join(format!("variants/{name}-{variant}.glb"));
-            let theirs = open(&[read(&path)], &Options::default()).unwrap();
-            assert_eq!(ours.sequence.sizes().faces, theirs.sequence.sizes().faces, "{name} {variant}");
-            assert_eq!(ours.sequence.sizes().poses, theirs.sequence.sizes().poses, "{name} {variant}");
-            let (a, b) = (&ours.sequence, &theirs.sequence);
-            // The faces may come in another order: compare the pose as a cloud of face centroids.
-            for (p, q) in a.poses().iter().zip(b.poses()) {
-                let far = cloud_distance(&centroids(a.faces(), &p.positions), &centroids(b.faces(), &q.positions));
-                assert!(far < tolerance * a.diagonal(), "{name} {variant} at {}: {far}", p.name);
-            }
-        }
-    }
-}
-
-fn centroids(faces: &[[u32; 3]], positions: &[glam::DVec3]) -> Vec<glam::DVec3> {
-    faces.iter().map(|f| f.iter().map(|&v| positions[v as usize]).sum::<glam::DVec3>() / 3.0).collect()
-}
-
-/// The largest distance from a point of one cloud to the nearest of the other.
-fn cloud_distance(a: &[glam::DVec3], b: &[glam::DVec3]) -> f64 {
-    let nearest = |p: &glam::DVec3| b.iter().map(|q| p.distance_squared(*q)).fold(f64::INFINITY, f64::min);
-    a.iter().step_by(7).map(nearest).fold(0.0, f64::max).sqrt()
 }
 
 /// Bind poses have the size and the orientation of the animation: Fox and CesiumMan are bound in frames of other

@@ -9,7 +9,7 @@ use sinew::linalg::rigid_fit::Moments;
 use sinew::mesh::ball::unit_ball;
 use sinew::observer::Silent;
 use sinew::sequence::{Pose, Sequence};
-use sinew::transfer::{Pair, Parameters, Prepared, Transfer, TransferError, transfer};
+use sinew::transfer::{Method, Pair, Parameters, Prepared, Transfer, TransferError, transfer};
 use sinew::zoo::{self, Creature, Recipe};
 use std::collections::BTreeMap;
 
@@ -195,6 +195,33 @@ fn following_a_dragged_point_stays_close_to_a_fresh_start() {
 }
 
 #[test]
+fn another_pose_follows_without_a_new_start() {
+    let (horse, camel) = (creature("horse", 3_000), creature("camel", 3_000));
+    let pairs = pairs(&horse, &camel, 10);
+    let (few, rest) = horse.sequence.poses().split_at(8);
+    let source = horse.sequence.faces().to_vec();
+    let source = Sequence::new("few", source, horse.sequence.reference().to_vec(), few.to_vec()).expect("a sequence");
+    let target = still(&camel.sequence);
+    for method in [Method::Bones, Method::Direct, Method::Relative] {
+        let parameters = Parameters { method, ..Parameters::default() };
+        let mut prepared = Prepared::new(&source, &target, &parameters, &mut Silent).expect("prepared");
+        assert_eq!(prepared.maps(&few[0].positions), None);
+        let result = prepared.transfer(&pairs, &mut Silent).expect("a transfer");
+        for (pose, maps) in few.iter().zip(&result.skin.maps) {
+            assert_eq!(prepared.maps(&pose.positions).as_ref(), Some(maps));
+        }
+        // The gait goes on: the next pose lies as far from the last as that from the one before.
+        let maps = prepared.maps(&rest[0].positions).expect("maps");
+        let next = result.skin.posed(target.reference(), &maps);
+        let poses = result.poses(target.reference());
+        let apart = |a: &[DVec3], b: &[DVec3]| a.iter().zip(b).map(|(a, b)| a.distance(*b)).sum::<f64>();
+        assert!(apart(&next, &poses[7]) < 3.0 * apart(&poses[7], &poses[6]), "{method:?}");
+        assert_eq!(prepared.maps(&rest[0].positions[1..]), None);
+        assert_eq!(prepared.maps(&vec![DVec3::NAN; horse.sequence.reference().len()]), None);
+    }
+}
+
+#[test]
 fn seams_stay_closed_and_loose_vertices_stay_finite() {
     let person = creature("person", 2_000).sequence;
     // Every face with vertices of its own, and a vertex far away that no face uses.
@@ -255,5 +282,26 @@ fn bodies_of_one_topology_move_as_they_truly_do() {
             println!("{name}, {count} pairs: {found:.4}");
             assert!(found < bound, "{name}, {count} pairs: {found}");
         }
+    }
+}
+
+#[test]
+fn bodies_of_their_own_topology_move_as_they_truly_do() {
+    let Some(data) = npz::data("bodies of their own topology whose true motion is known") else { return };
+    let body = |name: &str| npz::sequence(&data.join(format!("anny/low_{name}.npz")));
+    let man = body("shared_man_lean");
+    for (name, bound) in [("woman", 0.0105), ("heavy_man", 0.0125)] {
+        let (shared, target) = (body(&format!("shared_{name}")), body(&format!("own_{name}")));
+        let twin = |v: u32| {
+            let at = shared.reference()[v as usize];
+            let far = |u: &u32| target.reference()[*u as usize].distance(at);
+            (0..target.reference().len() as u32).min_by(|a, b| far(a).total_cmp(&far(b))).expect("a vertex")
+        };
+        let points = far_apart(man.reference(), 14).into_iter();
+        let pairs: Vec<Pair> = points.map(|v| Pair { source: v, target: twin(v) }).collect();
+        let result = by_default(&man, &still(&target), &pairs);
+        let found = error(&target, &result.poses(target.reference()), target.poses());
+        println!("{name}, own topology: {found:.4}");
+        assert!(found < bound, "{name}: {found}");
     }
 }

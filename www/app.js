@@ -2,11 +2,13 @@
  * The state of the page and what can be done to it. Everything that shows something listens to the events named
  * after what changed: `source`, `result`, `parameters`, `step`, `view`, `busy`, `notice`, `panel`, `link`, `doc`
  * (what can be undone), `painted` (the figures), `place` (in a stage), `points` (what follows from the key points), `target`,
- * `motion` (of the target), `selected`.
+ * `motion` (of the target), `selected`. Of the stages: `pose` (another one is shown),
+ * `released` (the source moves by its poses again), `run-stage` (let the positions go by), `lessons`, `tour`.
  *
  * What can be undone is one small immutable object, {@link Doc}; all else follows from it or is only looked at.
  */
-import { collect, fetchSource } from './files.js';
+import { collect, fetchSource, resting } from './files.js';
+import { plural } from './format.js';
 import { History } from './history.js';
 import { KeyPoints, MOST_POINTS } from './keypoints.js';
 import { readProject } from './project.js';
@@ -85,6 +87,8 @@ export class App extends EventTarget {
     this.work = new Work({ changed: () => this.changed('busy'), say: (text) => this.say(text) });
     /** How a project is opened, and the tours; both come with the page. @type {((project: object) => Promise<void>)|null} */
     this.openProject = null;
+    /** Stops the video that is being recorded. @type {AbortController|null} */
+    this.recording = null;
     /** @type {import('./timeline.js').Timeline|null} */
     this.timeline = null;
     /** @type {import('./tour.js').Guide|null} */
@@ -194,8 +198,11 @@ export class App extends EventTarget {
   /** @param {{name: string, blob: Blob}[]} files @param {object|null} options null: whatever the files are */
   async openFiles(files, options = null) {
     if (!options && (await this.tookProject(files))) return true;
-    const source = { kind: 'files', files, options: { ...this.about.options, ...options } };
-    return this.#open('open', source, () => collect(files, source.options));
+    // Poses dropped after a mesh that stands still may be that mesh's: the engine tells.
+    const { source: before, sequence } = this;
+    const still = !options && before?.files && !sequence.sizes.poses ? before.files : null;
+    const source = { kind: 'files', files, still, options: { ...this.about.options, ...options } };
+    return this.#open('open', source, () => collect(files, source.options, still));
   }
 
   /** Opens files as a project, if they are one. @returns {Promise<boolean>} whether they were */
@@ -225,11 +232,14 @@ export class App extends EventTarget {
     this.opening++;
     const sequence = await this.work.run('source', operation === 'zoo' ? 'making the creature' : 'reading', async (progress) => {
       const message = await payload(progress);
-      const transfer = (message.files ?? []).map((file) => file.bytes.buffer);
+      const transfer = [...(message.files ?? []), ...(message.still ?? [])].map((file) => file.bytes.buffer);
       return this.engine.call(operation, message, { progress, transfer });
     });
     this.opening--;
     if (!sequence) return false;
+    // From now on they are one drop, the mesh first.
+    if (sequence.joined) source.files = [...resting(source.still), ...source.files];
+    delete source.still;
     this.engine.keep(sequence);
     this.work.drop('points', 'search', 'pairs', 'motion', 'export');
     Object.assign(this, { source, sequence, result: null, places: {}, face: -1, frozen: null, notice: null, selected: -1 });
@@ -244,6 +254,7 @@ export class App extends EventTarget {
     this.keypoints.forget();
     this.transfer.forget();
     this.changed('source', 'result', 'parameters', 'notice', 'doc', 'link');
+    if (sequence.joined) this.say(`${plural(sequence.sizes.poses, 'pose')} of the mesh that was open.`, 'news');
     await this.segment();
     return true;
   }
@@ -455,7 +466,8 @@ export class App extends EventTarget {
   // Work and words.
 
   cancel() {
-    this.engine.cancel();
+    if (this.recording) this.recording.abort();
+    else this.engine.cancel();
   }
 
   /** Stops a segmentation that runs if a newer question would have to wait for it. */

@@ -24,8 +24,13 @@ export function dock(host, app) {
   show(host, h('div', { class: 'stage-row' }, strip.back, views, strip.on), strip.element, legend);
 
   let shown = '';
+  const choose = (id) => {
+    app.setView(id);
+    // Beside a lesson, its figure runs by itself.
+    if (app.lessons) app.changed('run-stage');
+  };
   const showViews = () => {
-    show(views, choice('View', available(app).map(({ id, label, title }) => [id, label, title]), app.view, (id) => app.setView(id), 'ribbon'));
+    show(views, choice('View', available(app).map(({ id, label, title }) => [id, label, title]), app.view, choose, 'ribbon'));
   };
   const reveal = () => views.querySelector(':checked')?.parentElement.scrollIntoView?.({ block: 'nearest', inline: 'center' });
   const update = () => {

@@ -3,7 +3,7 @@
  * its faces on bare clay, from where they are seen; another click brings back what was looked at before.
  */
 import { h, show } from './dom.js';
-import { MARK } from './steps/views.js';
+import { MARK } from './steps/paint.js';
 
 /** Notes of the importer that the doctor tells as well. */
 const TOLD = new Set(['welded', 'collapsed-faces']);

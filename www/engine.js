@@ -2,15 +2,23 @@
  * The page's side of the worker.
  *
  * The page sends `{id, operation, …}` and hears `{id, progress: {stage, done}}` any number of times, then one of
- * `{id, result}`, `{id, error}` (a sentence; the engine goes on) or `{id, crash}` (the engine is broken). To cancel
- * is to end the worker. A new one starts from the module that is compiled already, gets back the open meshes, which
- * the page keeps, and then the questions that were waiting; so a cancel or a crash costs one step and nothing else.
+ * `{id, result}`, `{id, error}` (a sentence; the engine goes on) or `{id, crash, memory}` (the engine is broken, and how
+ * many bytes it had). To cancel is to end the worker. A new one starts from the module that is compiled already, gets
+ * back the open meshes, which the page keeps, and then the questions that were waiting; so a cancel or a crash costs one
+ * step and nothing else.
  */
+
+import { bytes } from './format.js';
 
 /** What a cancelled call rejects with. */
 export class Cancelled extends Error {}
 
 const CRASHED = 'This step failed inside the engine, which has been started afresh. Nothing that was open is lost.';
+
+const FULL = (size) => `This step ran out of memory: the engine had taken ${size} and got no more. It has been started afresh, and nothing that was open is lost. Take fewer poses, or a simpler mesh.`;
+
+/** An engine that has taken more than this and breaks has run out of memory, as a rule. */
+const MUCH = 2 ** 30;
 
 const NEVER_RAN = 'The engine could not be started in this browser. Sinew needs WebAssembly and module workers.';
 
@@ -81,7 +89,7 @@ export class Engine {
     return about;
   }
 
-  #hear({ id, progress, result, error, crash }) {
+  #hear({ id, progress, result, error, crash, memory }) {
     const call = this.pending.get(id);
     if (!call) return;
     if (progress) {
@@ -91,14 +99,14 @@ export class Engine {
     this.pending.delete(id);
     if (crash !== undefined) {
       this.pending.set(id, call);
-      this.#broken(crash);
+      this.#broken(crash, memory);
     } else if (error !== undefined) call.reject(new Error(error));
     else call.resolve(result);
   }
 
-  #broken(cause) {
+  #broken(cause, memory = 0) {
     console.error('The worker broke:', cause);
-    this.#restart(new Error(CRASHED));
+    this.#restart(new Error(memory > MUCH ? FULL(bytes(memory)) : CRASHED));
   }
 
   #restart(reason, all = false) {

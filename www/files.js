@@ -7,19 +7,29 @@ const MOST_DOWNLOAD = 256 << 20;
 
 const megabytes = (bytes) => `${Math.round(bytes / (1 << 20))} MB`;
 
-/** The message that opens files. */
-export async function collect(files, options) {
-  const total = files.reduce((sum, { blob }) => sum + blob.size, 0);
+/**
+ * The message that opens files.
+ * @param {{name: string, blob: Blob}[]} files
+ * @param {object} options
+ * @param {{name: string, blob: Blob}[]} [still] what was open before, if its poses may be among the files
+ */
+export async function collect(files, options, still) {
+  const total = [...files, ...(still ?? [])].reduce((sum, { blob }) => sum + blob.size, 0);
   if (total > MOST_BYTES) throw new Error(`These files have ${megabytes(total)}; Sinew opens up to ${megabytes(MOST_BYTES)}.`);
-  const read = files.map(async ({ name, blob }) => {
-    try {
-      return { name, bytes: new Uint8Array(await blob.arrayBuffer()) };
-    } catch {
-      throw new Error(`“${name}” can no longer be read; it may have been moved or changed.`);
-    }
-  });
-  return { files: await Promise.all(read), options };
+  return { files: await readAll(files), options, ...(still && { still: await readAll(still) }) };
 }
+
+const readAll = (files) => Promise.all(files.map(async ({ name, blob }) => {
+  try {
+    return { name, bytes: new Uint8Array(await blob.arrayBuffer()) };
+  } catch {
+    throw new Error(`“${name}” can no longer be read; it may have been moved or changed.`);
+  }
+}));
+
+/** The same files under names that put them before their poses. */
+export const resting = (files) =>
+  files.map(({ name, blob }) => ({ name: name.replace(/(\.[^./]*)?$/, ' rest$1'), blob }));
 
 /** Everything in a drop, folders included. Must be called before the event handler returns. */
 export function dropped(transfer) {
@@ -66,9 +76,18 @@ export async function fetchSource(address, progress) {
   const files = [main];
   for (const uri of new Set(beside)) {
     const file = await download(allowed(uri, url), budget, progress);
-    files.push({ ...file, name: decodeURIComponent(uri) });
+    files.push({ ...file, name: decoded(uri) });
   }
   return files;
+}
+
+/** What a part of an address stands for; itself where it is no valid encoding. */
+function decoded(part) {
+  try {
+    return decodeURIComponent(part);
+  } catch {
+    return part;
+  }
 }
 
 function allowed(address, base) {
@@ -80,7 +99,7 @@ function allowed(address, base) {
 }
 
 async function download(url, budget, progress) {
-  const name = decodeURIComponent(url.pathname.split('/').pop()) || url.hostname;
+  const name = decoded(url.pathname.split('/').pop()) || url.hostname;
   let response;
   try {
     response = await fetch(url, { credentials: url.origin === location.origin ? 'same-origin' : 'omit', referrerPolicy: 'no-referrer' });

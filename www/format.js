@@ -27,7 +27,8 @@ const superscript = (value) => [...String(value)].map((c) => (c === '-' ? '⁻' 
 /** 2345678 → “2.3 MB”. */
 export function bytes(value) {
   if (value < 1e4) return `${(value / 1e3).toFixed(1)} kB`;
-  return value < 1e6 ? `${Math.round(value / 1e3)} kB` : `${(value / 1e6).toFixed(1)} MB`;
+  if (value < 1e6) return `${Math.round(value / 1e3)} kB`;
+  return value < 9.95e8 ? `${(value / 1e6).toFixed(1)} MB` : `${(value / 1e9).toFixed(1)} GB`;
 }
 
 /** A share of one as a percentage. */

@@ -216,7 +216,7 @@ window.sinew = {
     moves: app.transfer.motion && { method: app.transfer.method, pairs: app.transfer.motion.pairs, handles: app.transfer.motion.handles, beside: app.transfer.other?.method ?? null, seconds: app.transfer.motion.took },
     undo: app.history.past.length,
     redo: app.history.future.length,
-    drawn: stage.drawn && (app.second?.drawn ?? true) && (app.third?.drawn ?? true),
+    drawn: stage.drawn && (!app.second || app.second.host.hidden || app.second.drawn) && (app.third?.drawn ?? true),
     plain: stage.pace.plain,
     frame: Math.round(stage.pace.took),
   }),

@@ -136,7 +136,7 @@ export class Stage extends EventTarget {
       move(this.view, kept);
       if (kept.turn) turn(this.view, kept.turn);
       if (kept.camera) this.view.set_camera(kept.camera);
-      else this.view.frame();
+      else this.#frameAll();
     }
     this.view.set_time(kept.time);
     this.view.set_boundaries(kept.boundaries);
@@ -253,7 +253,14 @@ export class Stage extends EventTarget {
 
   /** Until the visitor moves the camera, it keeps the whole motion in the free part of the picture. */
   #frameUnlessMoved() {
-    if (this.view && this.kept.mesh && !this.kept.camera) this.view.frame();
+    if (this.view && this.kept.mesh && !this.kept.camera) this.#frameAll();
+  }
+
+  /** Fits the whole motion into the picture, and not the reference alone where that is shown. */
+  #frameAll() {
+    this.view.set_time(Math.max(0, this.kept.time));
+    this.view.frame();
+    this.view.set_time(this.kept.time);
   }
 
   /** What assistive technology says of the picture. */
@@ -385,7 +392,8 @@ export class Stage extends EventTarget {
   /** Moves the camera: `orbit`, `pan`, `zoom` or `frame` of the Viewport. */
   move(method, ...values) {
     if (!this.view) return;
-    this.view[method](...values);
+    if (method === 'frame') this.#frameAll();
+    else this.view[method](...values);
     const camera = this.view.camera();
     Object.assign(this.kept, { camera: method === 'frame' ? null : camera, turn: turnOf(camera) });
     this.#tellCamera(method, values);
@@ -519,7 +527,7 @@ export class Stage extends EventTarget {
     if (size) {
       this.view.set_insets(0, 0, 0, 0);
       this.view.resize(size[0] / PICTURE_SCALE, size[1] / PICTURE_SCALE, PICTURE_SCALE);
-      if (!this.kept.camera) this.view.frame();
+      if (!this.kept.camera) this.#frameAll();
     }
     this.view.redraw();
     this.view.render();

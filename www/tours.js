@@ -74,9 +74,9 @@ export const TOURS = [
     open: { zoo: 'person', target: 'person-arms-out' },
     stops: [
       { step: 'target', view: 'points', text: 'Two bodies alike, but one rests with its arms down, the other with its arms out. All that is computed so far is relative to rest. What will a swing of the arm be, begun from elsewhere?' },
-      { step: 'transfer', view: 'points', moves: true, method: 'direct', text: 'With the maps as they are: every arm is turned just as much as the other’s was, and ends up as much too high as it began. The motion is right and the pose is wrong.' },
-      { step: 'transfer', view: 'points', moves: true, method: 'relative', text: 'Turning about the target’s own points mends where things are, not how they are turned. The arms still keep their distance.' },
-      { step: 'transfer', view: 'points', moves: true, method: '', text: 'Bones that are set joint on joint can first be brought into the other’s rest pose, and then moved. The order matters. For matrices that act from the left it is the deformation times the rotation, S·P: turn first, then deform. The printed Eq. 9 has them the other way round.' },
+      { step: 'transfer', view: 'points', moves: true, method: 'direct', text: 'With the maps as they are, every arm is turned just as far as the other one was. But it began higher, so it ends higher. The motion is right and the pose is wrong.' },
+      { step: 'transfer', view: 'points', moves: true, method: 'relative', text: 'Turning about the target’s own points mends where things are, not how they are turned: the arms keep their distance from the body.' },
+      { step: 'transfer', view: 'points', moves: true, method: 'posed', text: 'To end alike, each part of the target has first to be brought into the pose that the source rests in, by a rotation P, and then to be deformed by S. For matrices that act from the left that is S·P. The printed Eq. 9 has it the other way round, and would deform first and turn the result. Compare the variants in the panel.' },
       { step: 'keypoints', view: 'alternation', place: 'last', text: 'Rotations again do all the work, as in the fit of a single pose. That is the thread through all of this: find what turns as one, and let it turn.' },
     ],
   },

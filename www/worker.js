@@ -11,14 +11,16 @@ const PROGRESS_EVERY = 60;
 const BY_FACES = new Set(['gradients', 'posed']);
 
 let engine;
+/** What the engine has of the browser's memory. @type {WebAssembly.Memory} */
+let memory;
 
 const operations = {
   start: async ({ module }) => {
-    await init({ module_or_path: module });
+    ({ memory } = await init({ module_or_path: module }));
     engine = new Engine();
     return Engine.about();
   },
-  open: ({ files, options }) => engine.open(files, options),
+  open: ({ files, still, options }) => (still ? engine.open_more(still, files, options) : engine.open(files, options)),
   zoo: ({ recipe }) => engine.zoo(recipe),
   restore: ({ kept }) => engine.restore(kept),
   segment: ({ parameters }, progress) => engine.segment(parameters, progress),
@@ -51,7 +53,7 @@ async function answer({ id, operation, ...payload }) {
   } catch (error) {
     // The engine throws sentences. Anything else, such as “unreachable”, means that it is broken for good.
     if (typeof error === 'string') self.postMessage({ id, error });
-    else self.postMessage({ id, crash: String(error) });
+    else self.postMessage({ id, crash: String(error), memory: memory?.buffer.byteLength ?? 0 });
   }
 }
 

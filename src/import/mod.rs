@@ -17,6 +17,7 @@ mod polygons;
 mod seams;
 mod stl;
 mod text;
+mod zip;
 
 pub use archive::may_be_needed;
 pub use natural::natural_order;
@@ -115,6 +116,22 @@ pub struct Imported {
 #[error("{0}")]
 pub struct ImportError(pub String);
 
+/// The longest sentence, in characters: names in a file may have any length.
+const LONGEST: usize = 600;
+
+impl ImportError {
+    /// Names out of a file, and what other programs say, may hold line breaks and other control characters.
+    fn on_one_line(self) -> Self {
+        let plain = self.0.split(|c: char| c.is_control()).map(str::trim).filter(|part| !part.is_empty());
+        let mut text = plain.collect::<Vec<_>>().join(" ");
+        if let Some((end, _)) = text.char_indices().nth(LONGEST) {
+            text.truncate(end);
+            text.push('…');
+        }
+        Self(text)
+    }
+}
+
 /// Reads the given files, which may be in any order, as when they are dropped on a page.
 ///
 /// One glTF or GLB (with its buffers beside it), or several OBJ, OFF, PLY or STL files: the first in
@@ -125,7 +142,7 @@ pub fn open(files: &[File], options: &Options) -> Result<Imported, ImportError> 
     let files = unpacked.as_ref();
     let mut order: Vec<&File> = files.iter().collect();
     natural::sort(&mut order);
-    open_listed(&order, files, options)
+    open_listed(&order, files, options).map_err(ImportError::on_one_line)
 }
 
 /// Reads the given files in the given order, as on a command line: of OBJ, OFF, PLY and STL files the first is the
@@ -133,7 +150,7 @@ pub fn open(files: &[File], options: &Options) -> Result<Imported, ImportError> 
 pub fn open_in_order(files: &[File], options: &Options) -> Result<Imported, ImportError> {
     let unpacked = unpacked(files)?;
     let files = unpacked.as_ref();
-    open_listed(&files.iter().collect::<Vec<_>>(), files, options)
+    open_listed(&files.iter().collect::<Vec<_>>(), files, options).map_err(ImportError::on_one_line)
 }
 
 /// Reads more files for a mesh that was opened before from `still` and stands still: its poses, where they are meshes
@@ -158,7 +175,7 @@ pub fn open_more(still: &[File], more: &[File], options: &Options) -> Result<(Im
             _ => {}
         }
     }
-    open_listed(&poses, more, options).map(|imported| (imported, false))
+    open_listed(&poses, more, options).map(|imported| (imported, false)).map_err(ImportError::on_one_line)
 }
 
 /// The files, with what is in archives in place of these.
@@ -170,7 +187,7 @@ fn unpacked(files: &[File]) -> Result<Cow<'_, [File]>, ImportError> {
     let mut all = Vec::new();
     for file in files {
         if archive::is_zip(&file.bytes) {
-            let mut inside = archive::unpack(file, &mut budget)?;
+            let mut inside = archive::unpack(file, &mut budget).map_err(ImportError::on_one_line)?;
             natural_order(&mut inside);
             all.extend(inside);
         } else {

@@ -7,21 +7,27 @@ use super::geodesic::Graph;
 use super::surface::Surface;
 use glam::DVec3;
 
+/// Times that the farthest vertex is sought, at most; three are usual.
+const SWEEPS: usize = 6;
+
 /// Candidates in the order in which they are found, as vertices of the surface.
 ///
-/// The first is the vertex farthest from the middle of the largest piece; for `seed` other than 0, another vertex of it.
-/// Then every piece gets one, the largest first, and then whatever vertex is farthest along the surface. If pieces alone
+/// The first is an end of the largest piece: from the vertex farthest from its middle, or for `seed` other than 0 from any
+/// of its vertices, to the farthest along the surface, and from there again until ways grow no longer. So nearly every seed
+/// ends at the same place, and with the same candidates. Then every piece gets one, the largest first, and then whatever vertex is farthest along the surface. If pieces alone
 /// take more than half of `count`, more candidates are added, so that the largest still get half of `count` by distance.
 pub fn candidates(surface: &Surface, graph: &Graph, count: usize, seed: u64) -> Vec<u32> {
     let pieces = &surface.pieces;
     let mut distance = vec![f64::INFINITY; surface.reference.len()];
     let mut found = Vec::new();
     for (number, piece) in pieces.iter().take(count).enumerate() {
-        let start = if number == 0 && seed != 0 {
-            piece[(scrambled(seed) % piece.len() as u64) as usize]
-        } else {
-            farthest_from_the_middle(piece, &surface.reference)
-        };
+        let mut start = farthest_from_the_middle(piece, &surface.reference);
+        if number == 0 {
+            if seed != 0 {
+                start = piece[(scrambled(seed) % piece.len() as u64) as usize];
+            }
+            start = end(surface, graph, start);
+        }
         graph.lower(&mut distance, start);
         found.push(start);
     }
@@ -40,6 +46,26 @@ pub fn candidates(surface: &Surface, graph: &Graph, count: usize, seed: u64) -> 
         }
     }
     found
+}
+
+/// One end of the longest way that is found from a vertex by going to the farthest again and again: the end that is farther
+/// from the middle of all.
+fn end(surface: &Surface, graph: &Graph, from: u32) -> u32 {
+    let (mut ends, mut length) = ([from, from], 0.0);
+    for _ in 0..SWEEPS {
+        let mut distance = vec![f64::INFINITY; surface.reference.len()];
+        graph.lower(&mut distance, ends[1]);
+        let reached = distance.iter().enumerate().filter(|(_, d)| d.is_finite());
+        let farthest = reached.fold((0, length), |best, (v, &d)| if d > best.1 { (v as u32, d) } else { best });
+        if farthest.1 <= length {
+            break;
+        }
+        (ends, length) = ([ends[1], farthest.0], farthest.1);
+    }
+    let middle = surface.reference.iter().sum::<DVec3>() / surface.reference.len().max(1) as f64;
+    let far = |v: u32| surface.reference[v as usize].distance_squared(middle);
+    let [a, b] = ends;
+    if far(b).total_cmp(&far(a)).then(a.cmp(&b)).is_gt() { b } else { a }
 }
 
 fn farthest_from_the_middle(piece: &[u32], points: &[DVec3]) -> u32 {

@@ -3,8 +3,7 @@
 use super::decimate::decimate;
 use super::field::{Energy, banded_order};
 use super::surface::Surface;
-use crate::linalg::rigid_fit::Moments;
-use crate::skinning::{Ring, features};
+use crate::skinning::{Placed, Ring, features};
 use glam::DVec3;
 
 /// Gradients of vertices, over all poses, that are kept.
@@ -18,8 +17,8 @@ pub struct Coarse {
     pub energy: Energy,
     /// The candidates, in the order they were found.
     pub candidates: Vec<u32>,
-    /// A pose each: #V displacements from the reference once the pose's rigid motion is taken out.
-    pub displacements: Vec<Vec<DVec3>>,
+    /// The poses next to the reference.
+    pub placed: Vec<Placed>,
     /// #V rows of rotations and stretches.
     pub features: Vec<f64>,
     /// #V × pieces: the nearest vertex of each piece.
@@ -59,11 +58,29 @@ impl Coarse {
             vertices.iter().for_each(|&v| piece[v as usize] = p as u32);
         }
         let energy = Energy::new(&surface.laplacian, piece);
-        let displacements = surface.poses.iter().map(|pose| displacements(&surface, pose)).collect();
+        let place = |pose: &Vec<DVec3>| Placed::new(&surface.reference, &surface.counts, 1.0, pose);
+        let placed = surface.poses.iter().map(place).collect();
         let all: Vec<usize> = (0..surface.poses.len()).collect();
         let features = surface.features(&all, gammas);
         let nearest = nearest_of_each_piece(&surface);
-        Self { surface, energy, candidates, displacements, features, nearest }
+        Self { surface, energy, candidates, placed, features, nearest }
+    }
+
+    /// Vertices at most `rings` edges from `v`, without it.
+    pub fn around(&self, v: u32, rings: usize) -> Vec<u32> {
+        let mut found = vec![v];
+        for _ in 0..rings {
+            let beside = |&[a, b]: &[u32; 2]| {
+                let [has_a, has_b] = [a, b].map(|v| found.binary_search(&v).is_ok());
+                (has_a != has_b).then_some(if has_a { b } else { a })
+            };
+            let next: Vec<u32> = self.surface.laplacian.edges.iter().filter_map(beside).collect();
+            found.extend(next);
+            found.sort_unstable();
+            found.dedup();
+        }
+        found.retain(|&u| u != v);
+        found
     }
 
     /// The vertex whose weights `v` takes where its own piece has no handle: the nearest one of a piece that has.
@@ -104,18 +121,6 @@ fn in_banded_order(faces: &[[u32; 3]]) -> Vec<u32> {
         }
     }
     banded_order(&links).into_iter().map(|i| kept[i as usize]).collect()
-}
-
-fn displacements(surface: &Surface, pose: &[DVec3]) -> Vec<DVec3> {
-    let mut moments = Moments::default();
-    for ((&m, &p), &q) in surface.counts.iter().zip(&surface.reference).zip(pose) {
-        if m > 0.0 {
-            moments.add(m, p, q);
-        }
-    }
-    let motion = moments.motion();
-    let back = motion.rotation.transpose();
-    surface.reference.iter().zip(pose).map(|(&p, &q)| back * (q - motion.translation) - p).collect()
 }
 
 fn nearest_of_each_piece(surface: &Surface) -> Vec<u32> {

@@ -198,8 +198,18 @@ impl Energy {
     }
 
     /// The least energy over the free vertices.
-    #[allow(clippy::needless_range_loop, reason = "v walks several arrays at once")]
     fn solve(&self, field: &mut Field, scratch: &mut Scratch) {
+        self.assemble(field, scratch);
+        scratch.factor();
+        scratch.solve();
+        for (&v, &x) in scratch.free.iter().zip(&scratch.x) {
+            field.value[v as usize] = if x.is_finite() { x } else { 0.0 };
+        }
+    }
+
+    /// The system over the free vertices.
+    #[allow(clippy::needless_range_loop, reason = "v walks several arrays at once")]
+    fn assemble(&self, field: &mut Field, scratch: &mut Scratch) {
         let Scratch { place, free, first, at, band, x } = scratch;
         free.clear();
         for v in 0..self.len() {
@@ -241,10 +251,43 @@ impl Energy {
             at.push(band.len());
             x.push(b);
         }
-        factor_and_solve(first, at, band, x);
-        for (&v, &x) in free.iter().zip(x.iter()) {
-            field.value[v as usize] = if x.is_finite() { x } else { 0.0 };
+    }
+
+    /// Estimates of the fields that are 1 at each of `ones` and 0 at `zeros`, by one factor for all: `like` is 0 at the same
+    /// `zeros` and near, and tells where they are held at 0. A field of no values where nothing can be said.
+    pub fn fields_like(&self, ones: &[u32], zeros: &[u32], like: &Field, scratch: &mut Scratch) -> Vec<Field> {
+        let n = self.len();
+        scratch.place.clear();
+        scratch.place.resize(n, FREE);
+        let mut field = Field { value: vec![0.0; n], held: like.held.clone() };
+        field.held.resize(n, false);
+        zeros.iter().for_each(|&z| scratch.place[z as usize] = FIXED);
+        for (place, piece) in scratch.place.iter_mut().zip(&self.piece) {
+            if ones.first().is_none_or(|&one| *piece != self.piece(one)) {
+                *place = FIXED;
+            }
         }
+        self.assemble(&mut field, scratch);
+        scratch.factor();
+        let one = |&one: &u32| {
+            let at = scratch.place[one as usize] as usize;
+            if at >= scratch.free.len() {
+                return Field::default();
+            }
+            scratch.x.fill(0.0);
+            scratch.x[at] = 1.0;
+            scratch.solve();
+            let top = scratch.x[at];
+            let mut field = Field { value: vec![0.0; n], held: vec![true; n] };
+            for (&v, x) in scratch.free.iter().zip(&scratch.x) {
+                let x = (x / top).clamp(0.0, 1.0);
+                if x > NOTHING {
+                    (field.value[v as usize], field.held[v as usize]) = (x, false);
+                }
+            }
+            field
+        };
+        ones.iter().map(one).collect()
     }
 }
 
@@ -252,34 +295,44 @@ const FREE: u32 = u32::MAX;
 const FIXED: u32 = u32::MAX - 1;
 
 /// Cholesky in an envelope: row i holds columns `first[i]..=i` from `at[i]` on.
-fn factor_and_solve(first: &[u32], at: &[usize], band: &mut [f64], x: &mut [f64]) {
-    let n = first.len();
-    for i in 0..n {
-        let (above, row) = band.split_at_mut(at[i]);
-        let row = &mut row[..at[i + 1] - at[i]];
-        let begin = first[i] as usize;
-        for j in begin..i {
-            let from = (first[j] as usize).max(begin);
-            let other = &above[at[j] + from - first[j] as usize..at[j + 1]];
-            let (done, rest) = row.split_at_mut(j - begin);
-            let sum = product(&done[from - begin..], other);
-            rest[0] = (rest[0] - sum) * other[other.len() - 1];
+impl Scratch {
+    fn factor(&mut self) {
+        let Self { first, at, band, .. } = self;
+        for i in 0..first.len() {
+            let (above, row) = band.split_at_mut(at[i]);
+            let row = &mut row[..at[i + 1] - at[i]];
+            let begin = first[i] as usize;
+            for j in begin..i {
+                let from = (first[j] as usize).max(begin);
+                let other = &above[at[j] + from - first[j] as usize..at[j + 1]];
+                let (done, rest) = row.split_at_mut(j - begin);
+                let sum = product(&done[from - begin..], other);
+                rest[0] = (rest[0] - sum) * other[other.len() - 1];
+            }
+            let last = row.len() - 1;
+            let square = product(&row[..last], &row[..last]);
+            let whole = row[last];
+            let pivot = whole - square;
+            // Reciprocals on the diagonal; what has no pivot stays 0.
+            row[last] = if pivot > 1e-13 * whole { 1.0 / pivot.sqrt() } else { 0.0 };
         }
-        let last = row.len() - 1;
-        let square = product(&row[..last], &row[..last]);
-        let whole = row[last];
-        let pivot = whole - square;
-        // Reciprocals on the diagonal; what has no pivot stays 0.
-        row[last] = if pivot > 1e-13 * whole { 1.0 / pivot.sqrt() } else { 0.0 };
-        let sum = product(&row[..last], &x[begin..i]);
-        x[i] = (x[i] - sum) * row[last];
     }
-    for i in (0..n).rev() {
-        let row = &band[at[i]..at[i + 1]];
-        let last = row.len() - 1;
-        x[i] *= row[last];
-        let xi = x[i];
-        x[first[i] as usize..i].iter_mut().zip(row).for_each(|(x, l)| *x -= l * xi);
+
+    fn solve(&mut self) {
+        let Self { first, at, band, x, .. } = self;
+        for i in 0..first.len() {
+            let row = &band[at[i]..at[i + 1]];
+            let last = row.len() - 1;
+            let sum = product(&row[..last], &x[first[i] as usize..i]);
+            x[i] = (x[i] - sum) * row[last];
+        }
+        for i in (0..first.len()).rev() {
+            let row = &band[at[i]..at[i + 1]];
+            let last = row.len() - 1;
+            x[i] *= row[last];
+            let xi = x[i];
+            x[first[i] as usize..i].iter_mut().zip(row).for_each(|(x, l)| *x -= l * xi);
+        }
     }
 }
 

@@ -7,7 +7,7 @@
 //! |---|---|
 //! | §3.1, candidates | `candidates`, with `geodesic` distances |
 //! | Algorithm 1 by the letter | `literal` |
-//! | Algorithm 1 on a coarse mesh, with short cuts that keep its answer | `search`, with `decimate`, `coarse`, `field` |
+//! | Algorithm 1 on coarse meshes, with short cuts that keep its answer | `stages`, with `search`, `leftover`, `decimate`, `coarse`, `field` |
 //! | Eq. 2–21 for a set of points on the mesh itself | `full` |
 //!
 //! Eq. 22 divides a Frobenius norm by m·n and so is smaller than the mean vertex distance by √n; ε = 0.03 belongs to the
@@ -19,12 +19,14 @@ mod decimate;
 mod field;
 mod full;
 mod geodesic;
+mod leftover;
 mod literal;
 mod parameters;
 mod poses;
 mod result;
 mod search;
 mod select;
+mod stages;
 mod surface;
 mod thin;
 mod watch;

@@ -28,7 +28,7 @@ pub struct Parameters {
     pub gamma_shear: f64,
     /// How firmly maps are held near rotations where no pose says otherwise ([`FitParameters::hold`]).
     pub hold: f64,
-    /// Another number, another first candidate.
+    /// Another number, another vertex from which the first candidate is sought; hardly any matters.
     pub seed: u64,
 }
 

@@ -18,7 +18,7 @@ pub struct KeyPoints {
     /// reference, over all poses and all vertices that faces use, in radii of the unit sphere. The last one is measured
     /// on the mesh itself; on large meshes those before it are measured on a coarse one.
     pub errors: Vec<f64>,
-    /// The candidates in the order they were found.
+    /// The candidates in the order they were found; at the end key points that lie between them.
     pub candidates: Vec<u32>,
     /// What was tried when points were added, step by step.
     pub steps: Vec<Step>,

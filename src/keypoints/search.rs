@@ -14,25 +14,26 @@
 
 use super::coarse::Coarse;
 use super::field::{Field, NOTHING, Scratch};
+use super::leftover::Leftover;
 use super::result::Tried;
-use crate::skinning::factor::Factor;
 use crate::skinning::{FitParameters, Fitter, Rig, Rows, clusters};
 use glam::DVec3;
 
 /// How many candidates pass the first and the second sieve when a point is added.
-const ADDING: [usize; 2] = [40, 5];
+const ADDING: [usize; 2] = [20, 3];
 
 /// The same when one is replaced.
-const REPLACING: [usize; 2] = [25, 3];
+const REPLACING: [usize; 2] = [12, 2];
+
+/// The same when one is moved to a vertex at most so many edges away.
+const MOVING: [usize; 2] = [6, 1];
+const RINGS: usize = 2;
 
 /// A replacement must gain more than this share of the error…
-const WORTH: f64 = 1e-4;
+pub const WORTH: f64 = 1e-4;
 
-/// …and than this: below it, errors are rounding…
+/// …and than this: below it, errors are rounding.
 const ROUNDING: f64 = 1e-12;
-
-/// …and is not looked at closely if it seems worse by more than this share.
-const HOPELESS: f64 = 0.01;
 
 /// A field that is below this at a vertex hardly feels what happens there.
 const FELT: f64 = 1e-3;
@@ -43,8 +44,8 @@ pub type KeepGoing<'a> = &'a mut dyn FnMut() -> bool;
 /// A set of key points on the coarse mesh.
 #[derive(Clone, Default)]
 pub struct Set {
-    /// Indices of candidates, in the order chosen.
-    pub members: Vec<usize>,
+    /// Vertices of the coarse mesh, in the order chosen.
+    pub members: Vec<u32>,
     fields: Vec<Field>,
     /// Fields that are estimates.
     rough: Vec<bool>,
@@ -67,75 +68,143 @@ pub struct Search<'a> {
 impl<'a> Search<'a> {
     /// Starts from the first candidate (§3.5), which matters little, as it will be replaced.
     pub fn new(coarse: &'a Coarse, fit: FitParameters) -> Self {
+        let mut search = Self::from_points(coarse, fit, coarse.candidates.get(..1).unwrap_or_default());
+        let start = search.set.members.clone();
+        search.probes = coarse.candidates.iter().map(|&c| search.field(c, &start, None)).collect();
+        search
+    }
+
+    /// Starts from points (vertices of the coarse mesh) that are only to be moved and put in order.
+    pub fn from_points(coarse: &'a Coarse, fit: FitParameters, points: &[u32]) -> Self {
         let fit = FitParameters { rounds: 6, tolerance: 1e-3, ..fit };
         let mut search = Self { coarse, fit, scratch: Scratch::default(), set: Set::default(), probes: Vec::new() };
-        if !coarse.candidates.is_empty() {
-            let field = search.field(0, &[], None);
-            let groups = vec![0; coarse.energy.len()];
-            let set = Set { members: vec![0], fields: vec![field], rough: vec![false], groups, error: 0.0 };
-            search.set = search.regrouped(set);
-            search.probes = (0..coarse.candidates.len()).map(|c| search.field(c, &[0], None)).collect();
+        if points.is_empty() {
+            return search;
         }
+        let fields = (0..points.len()).map(|k| search.field(points[k], &without(points, k), None)).collect();
+        let (groups, rough) = (vec![0; coarse.energy.len()], vec![false; points.len()]);
+        search.set = search.regrouped(Set { members: points.to_vec(), fields, rough, groups, error: 0.0 });
         search
+    }
+
+    /// What [`Search::restore`] goes back to.
+    pub fn state(&self) -> (Set, Vec<Field>) {
+        (self.set.clone(), self.probes.clone())
+    }
+
+    /// Goes back.
+    pub fn restore(&mut self, (set, probes): (Set, Vec<Field>)) {
+        (self.set, self.probes) = (set, probes);
     }
 
     /// Adds the best candidate; what was tried, or `None` if there is no other candidate, or no wish to go on.
     pub fn add(&mut self, keep_going: KeepGoing) -> Option<Vec<Tried>> {
-        let base = self.set.clone();
         let probes = self.probes.clone();
-        let (best, tried) = self.sieve(&base, &probes, ADDING, f64::INFINITY, keep_going)?;
+        let free: Vec<(u32, &Field)> = self.coarse.candidates.iter().copied().zip(&probes).collect();
+        let base = self.set.clone();
+        let (best, tried) = self.sieve(&base, &free, ADDING, f64::INFINITY, keep_going)?;
         self.accept(best.map(|best| self.regrouped(best))?, probes);
         Some(tried)
     }
 
-    /// Tries to replace the point at `place`; whether a better one was found, or `None` on no wish to go on.
-    pub fn replace(&mut self, place: usize, keep_going: KeepGoing) -> Option<bool> {
-        let gone = self.set.members[place];
-        let vertex = self.coarse.candidates[gone];
-        let bump = self.set.fields[place].clone();
-        let base = self.without(&self.set, place);
-        let mut probes = self.probes.clone();
-        for (c, probe) in probes.iter_mut().enumerate() {
-            if c != gone && !base.members.contains(&c) {
-                let bump = bump.lowered(self.coarse.candidates[c], probe);
-                *probe = probe.plus(self.coarse.energy.share(probe, vertex, &bump), &bump);
-            }
-        }
-        probes[gone] = bump;
-        let limit = self.set.error * (1.0 + HOPELESS);
-        let (best, _) = self.sieve(&base, &probes, REPLACING, limit, keep_going)?;
-        // New groups change the error a little: only what is better with them is an improvement.
-        match best.map(|best| self.regrouped(best)) {
-            Some(mut best) if best.error < self.set.error * (1.0 - WORTH) - ROUNDING => {
-                // The new point takes the place of the old one.
-                best.members[place..].rotate_right(1);
-                best.fields[place..].rotate_right(1);
-                best.rough[place..].rotate_right(1);
-                self.accept(best, probes);
-                Some(true)
-            }
-            _ => Some(false),
-        }
+    /// Takes away the point that can be spared best; `None` on no wish to go on, or if there is only one.
+    pub fn remove(&mut self, keep_going: KeepGoing) -> Option<()> {
+        let (place, rest) = self.spared(&self.set, keep_going)?;
+        let probes = self.released(place);
+        let rest = self.refined(rest);
+        self.set = self.regrouped(rest);
+        self.probes = probes;
+        Some(())
     }
 
-    /// The points in the order in which they count, and the error with the first 1, 2, … of them: time and again the one
+    /// Tries to replace the point at `place`; whether a better one was found, or `None` on no wish to go on.
+    pub fn replace(&mut self, place: usize, keep_going: KeepGoing) -> Option<bool> {
+        let probes = self.released(place);
+        let candidates: Vec<(u32, &Field)> = self.coarse.candidates.iter().copied().zip(&probes).collect();
+        let best = self.instead(place, &candidates, REPLACING, keep_going)?;
+        Some(self.accept_instead(place, best, probes))
+    }
+
+    /// Tries to move the point at `place` to a vertex near it; whether that was for the better, or `None` on no wish to go
+    /// on.
+    pub fn shift(&mut self, place: usize, keep_going: KeepGoing) -> Option<bool> {
+        let near = self.coarse.around(self.set.members[place], RINGS);
+        let zeros = without(&self.set.members, place);
+        let fields = self.coarse.energy.fields_like(&near, &zeros, &self.set.fields[place], &mut self.scratch);
+        let near: Vec<(u32, &Field)> = near.iter().copied().zip(&fields).filter(|(_, f)| !f.value.is_empty()).collect();
+        let best = self.instead(place, &near, MOVING, keep_going)?;
+        let probes = self.released(place);
+        Some(self.accept_instead(place, best, probes))
+    }
+
+    /// The best of others, with estimates of their fields, in place of the point at `place`.
+    fn instead(
+        &mut self,
+        place: usize,
+        others: &[(u32, &Field)],
+        pass: [usize; 2],
+        keep_going: KeepGoing,
+    ) -> Option<Option<Set>> {
+        let base = self.without(&self.set, place);
+        let (best, _) = self.sieve(&base, others, pass, self.set.error, keep_going)?;
+        // New groups change the error a little: only what is better with them is an improvement.
+        Some(best.map(|best| self.regrouped(best)))
+    }
+
+    /// Takes a set over, whose last point replaces that at `place`, if it is better.
+    fn accept_instead(&mut self, place: usize, best: Option<Set>, probes: Vec<Field>) -> bool {
+        let enough = self.set.error * (1.0 - WORTH) - ROUNDING;
+        let Some(mut best) = best.filter(|best| best.error < enough) else { return false };
+        // The new point takes the place of the old one.
+        best.members[place..].rotate_right(1);
+        best.fields[place..].rotate_right(1);
+        best.rough[place..].rotate_right(1);
+        self.accept(best, probes);
+        true
+    }
+
+    /// The probes when the point at `place` is not there.
+    fn released(&self, place: usize) -> Vec<Field> {
+        let (vertex, bump) = (self.set.members[place], &self.set.fields[place]);
+        let released = |(&c, probe): (&u32, &Field)| {
+            if c == vertex {
+                bump.clone()
+            } else if self.set.members.contains(&c) {
+                probe.clone()
+            } else {
+                let bump = bump.lowered(c, probe);
+                probe.plus(self.coarse.energy.share(probe, vertex, &bump), &bump)
+            }
+        };
+        self.coarse.candidates.iter().zip(&self.probes).map(released).collect()
+    }
+
+    /// The point that can be spared best, and an estimate of the set without it.
+    fn spared(&self, set: &Set, keep_going: KeepGoing) -> Option<(usize, Set)> {
+        if set.members.len() < 2 {
+            return None;
+        }
+        let mut best: Option<(usize, Set)> = None;
+        for place in 0..set.members.len() {
+            if !keep_going() {
+                return None;
+            }
+            let mut rest = self.without(set, place);
+            rest.error = self.error(&rest);
+            if best.as_ref().is_none_or(|(_, b)| rest.error < b.error) {
+                best = Some((place, rest));
+            }
+        }
+        best
+    }
+
+    /// The points (vertices of the coarse mesh) in the order in which they count, and the error with the first 1, 2, … of them: time and again the one
     /// is taken away that can be spared best, and what is left first comes first.
-    pub fn order(&mut self, keep_going: KeepGoing) -> Option<(Vec<usize>, Vec<f64>)> {
+    pub fn order(&mut self, keep_going: KeepGoing) -> Option<(Vec<u32>, Vec<f64>)> {
         let mut set = self.set.clone();
         let (mut order, mut errors) = (Vec::new(), vec![set.error]);
         while set.members.len() > 1 {
-            let mut best: Option<(usize, Set)> = None;
-            for place in 0..set.members.len() {
-                if !keep_going() {
-                    return None;
-                }
-                let mut rest = self.without(&set, place);
-                rest.error = self.error(&rest);
-                if best.as_ref().is_none_or(|(_, b)| rest.error < b.error) {
-                    best = Some((place, rest));
-                }
-            }
-            let (gone, rest) = best?;
+            let (gone, rest) = self.spared(&set, keep_going)?;
             order.push(set.members[gone]);
             set = self.refined(rest);
             set = self.regrouped(set);
@@ -150,14 +219,12 @@ impl<'a> Search<'a> {
     /// Takes a set over as the current one; `probes` are those of the set before its last point came in.
     fn accept(&mut self, set: Set, mut probes: Vec<Field>) {
         for (added, field) in set.members.iter().zip(&set.fields).filter(|(m, _)| !self.set.members.contains(m)) {
-            let vertex = self.coarse.candidates[*added];
-            for (c, probe) in probes.iter_mut().enumerate() {
-                let reach = probe.value[vertex as usize];
-                if c != *added && reach > NOTHING {
+            for (own, probe) in self.coarse.candidates.iter().zip(&mut probes) {
+                let reach = probe.value[*added as usize];
+                if own != added && reach > NOTHING {
                     // 1 at the candidate and 0 at the new point, both being 0 at all others.
-                    let own = self.coarse.candidates[c];
-                    let whole = 1.0 - reach * field.value[own as usize];
-                    *probe = probe.plus(-reach, field).times(1.0 / whole.max(NOTHING), own);
+                    let whole = 1.0 - reach * field.value[*own as usize];
+                    *probe = probe.plus(-reach, field).times(1.0 / whole.max(NOTHING), *own);
                 }
             }
         }
@@ -167,25 +234,20 @@ impl<'a> Search<'a> {
 
     /// The set with its own groups (§3.3), and its error with them.
     fn regrouped(&self, mut set: Set) -> Set {
-        let handles = self.handles(&set.members);
-        set.groups = clusters(&self.weights(&set), &self.coarse.features, &handles, &self.coarse.surface.counts);
+        let surface = &self.coarse.surface;
+        set.groups = clusters(&self.weights(&set), &self.coarse.features, &set.members, &surface.counts);
         set.error = self.error(&set);
         set
     }
 
-    fn handles(&self, members: &[usize]) -> Vec<u32> {
-        members.iter().map(|&m| self.coarse.candidates[m]).collect()
-    }
-
-    fn field(&mut self, one: usize, zeros: &[usize], before: Option<&Field>) -> Field {
-        let zeros = self.handles(zeros);
-        self.coarse.energy.field(self.coarse.candidates[one], &zeros, before, &mut self.scratch)
+    fn field(&mut self, one: u32, zeros: &[u32], before: Option<&Field>) -> Field {
+        self.coarse.energy.field(one, zeros, before, &mut self.scratch)
     }
 
     /// The set without one of its points: the fields that it held down rise.
     fn without(&self, set: &Set, place: usize) -> Set {
         let mut rest = set.clone();
-        let vertex = self.coarse.candidates[rest.members.remove(place)];
+        let vertex = rest.members.remove(place);
         let bump = rest.fields.remove(place);
         rest.rough.remove(place);
         for (field, rough) in rest.fields.iter_mut().zip(&mut rest.rough) {
@@ -199,8 +261,7 @@ impl<'a> Search<'a> {
     }
 
     /// The set with one point more: the fields that reach there are held down.
-    fn with(&self, base: &Set, added: usize, probe: &Field) -> Set {
-        let vertex = self.coarse.candidates[added];
+    fn with(&self, base: &Set, vertex: u32, probe: &Field) -> Set {
         let mut set = base.clone();
         for (field, rough) in set.fields.iter_mut().zip(&mut set.rough) {
             if field.value[vertex as usize] > NOTHING {
@@ -208,7 +269,7 @@ impl<'a> Search<'a> {
                 *field = field.lowered(vertex, probe);
             }
         }
-        set.members.push(added);
+        set.members.push(vertex);
         set.fields.push(probe.clone());
         set.rough.push(true);
         set
@@ -218,9 +279,7 @@ impl<'a> Search<'a> {
     fn refined(&mut self, mut set: Set) -> Set {
         for k in 0..set.members.len() {
             if set.rough[k] {
-                let mut others = set.members.clone();
-                let own = others.remove(k);
-                set.fields[k] = self.field(own, &others, Some(&set.fields[k]));
+                set.fields[k] = self.field(set.members[k], &without(&set.members, k), Some(&set.fields[k]));
                 set.rough[k] = false;
             }
         }
@@ -233,7 +292,7 @@ impl<'a> Search<'a> {
         let (n, h) = (self.coarse.energy.len(), set.members.len());
         let mut has_handle = vec![false; self.coarse.surface.pieces.len()];
         for &m in &set.members {
-            if let Some(has) = has_handle.get_mut(self.coarse.energy.piece(self.coarse.candidates[m]) as usize) {
+            if let Some(has) = has_handle.get_mut(self.coarse.energy.piece(m) as usize) {
                 *has = true;
             }
         }
@@ -254,46 +313,44 @@ impl<'a> Search<'a> {
     /// The mean vertex distance over all poses when the set's maps are fitted.
     fn error(&self, set: &Set) -> f64 {
         let surface = &self.coarse.surface;
-        let handles = self.handles(&set.members);
-        let rows = Rows::new(&self.weights(set), handles.len());
+        let rows = Rows::new(&self.weights(set), set.members.len());
         let rig = Rig {
             reference: &surface.reference,
             edges: &surface.laplacian.edges,
             stiffness: &surface.laplacian.cotangents,
             mass: &surface.counts,
-            handles: &handles,
+            handles: &set.members,
             weights: &rows,
             groups: &set.groups,
             ball: (DVec3::ZERO, 1.0),
         };
         let fitter = Fitter::new(&rig, &self.fit);
-        let sum: f64 = surface.poses.iter().map(|pose| fitter.fit(pose).error).sum();
+        let sum: f64 = self.coarse.placed.iter().map(|placed| fitter.fit_error(placed)).sum();
         sum / surface.poses.len().max(1) as f64
     }
 
-    /// The best of the candidates that pass all sieves, and all that were fitted. Estimates above `limit` do not pass.
+    /// The best of `others`, vertices with estimates of their fields, that passes all sieves, and all that were fitted.
+    /// Estimates above `limit` do not pass.
     fn sieve(
         &mut self,
         base: &Set,
-        probes: &[Field],
+        others: &[(u32, &Field)],
         pass: [usize; 2],
         limit: f64,
         keep_going: KeepGoing,
     ) -> Option<(Option<Set>, Vec<Tried>)> {
-        let handles = self.handles(&base.members);
-        let leftover = Leftover::new(self.coarse, &handles, &self.weights(base), self.fit.hold);
-        let free = (0..probes.len()).filter(|c| !base.members.contains(c) && !self.set.members.contains(c));
-        let mut gains: Vec<(f64, usize)> =
-            free.map(|c| (leftover.gain(self.coarse.candidates[c], &probes[c]), c)).collect();
+        let leftover = Leftover::new(self.coarse, &base.members, &self.weights(base), self.fit.hold);
+        let free = others.iter().filter(|(v, _)| !base.members.contains(v) && !self.set.members.contains(v));
+        let mut gains: Vec<(f64, u32, &Field)> = free.map(|&(v, field)| (leftover.gain(v, field), v, field)).collect();
         gains.sort_by(|a, b| b.0.total_cmp(&a.0).then(a.1.cmp(&b.1)));
         let mut estimates = Vec::new();
-        for &(_, c) in gains.iter().take(pass[0]) {
+        for &(_, vertex, field) in gains.iter().take(pass[0]) {
             if !keep_going() {
                 return None;
             }
-            let mut set = self.with(base, c, &probes[c]);
+            let mut set = self.with(base, vertex, field);
             set.error = self.error(&set);
-            estimates.push((c, set));
+            estimates.push((vertex, set));
         }
         estimates.sort_by(|a, b| a.1.error.total_cmp(&b.1.error).then(a.0.cmp(&b.0)));
         let mut tried: Vec<Tried> = estimates.iter().map(|(c, set)| self.tried(*c, set.error)).collect();
@@ -314,118 +371,14 @@ impl<'a> Search<'a> {
         Some((best, tried))
     }
 
-    fn tried(&self, candidate: usize, error: f64) -> Tried {
-        Tried { vertex: self.coarse.surface.origin[self.coarse.candidates[candidate] as usize], error }
+    fn tried(&self, vertex: u32, error: f64) -> Tried {
+        Tried { vertex: self.coarse.surface.origin[vertex as usize], error }
     }
 }
 
-/// What a set leaves of the poses when it is fitted by least squares alone.
-struct Leftover<'a> {
-    coarse: &'a Coarse,
-    at: Vec<DVec3>,
-    rows: Rows,
-    factor: Factor,
-    /// #V displacements left, pose by pose.
-    left: Vec<Vec<DVec3>>,
-    hold: f64,
-}
-
-impl<'a> Leftover<'a> {
-    fn new(coarse: &'a Coarse, handles: &[u32], weights: &[f64], hold: f64) -> Self {
-        let surface = &coarse.surface;
-        let at: Vec<DVec3> = handles.iter().map(|&v| surface.reference[v as usize]).collect();
-        let rows = Rows::new(weights, handles.len());
-        let n = 4 * at.len();
-        let mut a = vec![0.0; n * n];
-        let mut held = vec![0.0; at.len()];
-        for (v, &m) in surface.counts.iter().enumerate() {
-            let row: Vec<(usize, [f64; 4])> = entries(&rows, v, surface.reference[v], &at).collect();
-            for (r, (k, f)) in row.iter().enumerate() {
-                held[*k] += hold * m * f[3];
-                for (l, g) in &row[..=r] {
-                    for (i, f) in f.iter().enumerate() {
-                        (0..4).for_each(|j| a[(4 * k + i) * n + 4 * l + j] += m * f * g[j]);
-                    }
-                }
-            }
-        }
-        (0..n).for_each(|i| a[i * n + i] += held[i / 4]);
-        let factor = Factor::new(a, n);
-        let left = coarse.displacements.iter().map(|d| {
-            let mut x = vec![[0.0; 3]; n];
-            for (v, (&m, d)) in surface.counts.iter().zip(d).enumerate() {
-                for (k, f) in entries(&rows, v, surface.reference[v], &at) {
-                    for (x, f) in x[4 * k..4 * k + 4].iter_mut().zip(f) {
-                        (0..3).for_each(|c| x[c] += m * f * d[c]);
-                    }
-                }
-            }
-            factor.solve(&mut x);
-            let left = |(v, d): (usize, &DVec3)| {
-                let mut d = *d;
-                for (k, f) in entries(&rows, v, surface.reference[v], &at) {
-                    x[4 * k..4 * k + 4].iter().zip(f).for_each(|(x, f)| d -= f * DVec3::from_array(*x));
-                }
-                d
-            };
-            d.iter().enumerate().map(left).collect()
-        });
-        let left = left.collect();
-        Self { coarse, at, rows, factor, left, hold }
-    }
-
-    /// By how much the summed squared distance falls when the functions `field [p − c, 1]` may be added.
-    fn gain(&self, candidate: u32, field: &Field) -> f64 {
-        let surface = &self.coarse.surface;
-        let c = surface.reference[candidate as usize];
-        let mut own = [[0.0; 4]; 4];
-        let mut cross = vec![[0.0; 4]; 4 * self.at.len()];
-        let mut pull = vec![[[0.0; 3]; 4]; self.left.len()];
-        for (v, (&m, &w)) in surface.counts.iter().zip(&field.value).enumerate() {
-            if w <= NOTHING || m <= 0.0 {
-                continue;
-            }
-            let p = surface.reference[v] - c;
-            let f = [w * p.x, w * p.y, w * p.z, w];
-            let mf = f.map(|f| m * f);
-            for (own, mf) in own.iter_mut().zip(mf) {
-                (0..4).for_each(|j| own[j] += mf * f[j]);
-            }
-            for (k, g) in entries(&self.rows, v, surface.reference[v], &self.at) {
-                for (cross, g) in cross[4 * k..4 * k + 4].iter_mut().zip(g) {
-                    (0..4).for_each(|j| cross[j] += g * mf[j]);
-                }
-            }
-            for (pull, left) in pull.iter_mut().zip(&self.left) {
-                let left = left[v];
-                for (pull, mf) in pull.iter_mut().zip(mf) {
-                    (0..3).for_each(|i| pull[i] += mf * left[i]);
-                }
-            }
-        }
-        let mut x = cross.clone();
-        self.factor.solve(&mut x);
-        let held = self.hold * own[3][3].max(f64::MIN_POSITIVE);
-        let mut schur = vec![0.0; 16];
-        for i in 0..4 {
-            for j in 0..4 {
-                let known: f64 = cross.iter().zip(&x).map(|(a, b)| a[i] * b[j]).sum();
-                schur[4 * i + j] = own[i][j] - known + if i == j { held } else { 0.0 };
-            }
-        }
-        let factor = Factor::new(schur, 4);
-        let gain = |pull: &[[f64; 3]; 4]| -> f64 {
-            let mut x = pull.to_vec();
-            factor.solve(&mut x);
-            x.as_flattened().iter().zip(pull.as_flattened()).map(|(a, b)| a * b).sum()
-        };
-        pull.iter().map(gain).sum()
-    }
-}
-
-fn entries<'a>(rows: &'a Rows, v: usize, p: DVec3, at: &'a [DVec3]) -> impl Iterator<Item = (usize, [f64; 4])> + 'a {
-    rows.entries(v).map(move |(k, w)| {
-        let local = p - at[k as usize];
-        (k as usize, [w * local.x, w * local.y, w * local.z, w])
-    })
+/// All but one.
+fn without(points: &[u32], place: usize) -> Vec<u32> {
+    let mut others = points.to_vec();
+    others.remove(place);
+    others
 }

@@ -1,13 +1,12 @@
 //! The steps of the selection in their order.
 
 use super::candidates::candidates;
-use super::coarse::Coarse;
 use super::full::Full;
 use super::geodesic::Graph;
 use super::literal;
 use super::poses;
 use super::result::{Fitted, KeyPointError, KeyPoints, Replacement, Step};
-use super::search::Search;
+use super::stages;
 use super::surface::Surface;
 use super::watch::Watch;
 use super::{Parameters, Stop};
@@ -16,17 +15,11 @@ use crate::sequence::Sequence;
 use crate::warning::Warning;
 use crate::weights::Weights;
 
-/// Vertices of the coarse mesh on which sets are tried.
-const COARSE: usize = 600;
-
 /// Meshes of more vertices than this have their error curve measured on the coarse mesh, but for its end.
 const MEASURED: usize = 1_500;
 
 /// Points of a mesh that does not move, if nobody says how many.
 const STILL: usize = 12;
-
-/// How often every point may be replaced; three times are many.
-const ROUNDS: usize = 20;
 
 /// A point is worth it, where the curve is to become flat, if it takes this share off the error…
 const STEEP: f64 = 0.04;
@@ -50,7 +43,7 @@ pub fn select(
     watch.begin("candidates", 0.02)?;
     let graph = Graph::new(&surface.faces, &surface.reference);
     let found = candidates(&surface, &graph, parameters.candidates, parameters.seed);
-    let names: Vec<u32> = found.iter().map(|&c| surface.origin[c as usize]).collect();
+    let mut names: Vec<u32> = found.iter().map(|&c| surface.origin[c as usize]).collect();
     let mut warnings = Vec::new();
 
     watch.begin("coarse mesh", 0.05)?;
@@ -65,9 +58,7 @@ pub fn select(
     } else if parameters.literal {
         by_the_letter(&full, parameters, &names, &mut watch)?
     } else {
-        let gammas = [parameters.gamma_rotation, parameters.gamma_shear];
-        let coarse = Coarse::new(&surface, &found, &poses::spread(&surface), COARSE, gammas);
-        on_the_coarse_mesh(&coarse, &full, parameters, &mut watch)?
+        stages::run(&found, &full, parameters, &mut watch)?
     };
 
     watch.begin("fits", 0.95)?;
@@ -78,6 +69,8 @@ pub fn select(
         warnings.push(Warning::new("few-candidates", message));
     }
     warnings.extend(fitted.weights.warnings.iter().cloned());
+    let moved: Vec<u32> = points.iter().copied().filter(|p| !names.contains(p)).collect();
+    names.extend(moved);
     Ok(KeyPoints {
         key_points: points,
         errors,
@@ -109,24 +102,30 @@ fn prepared<'a>(sequence: &Sequence, surface: &'a Surface, parameters: &Paramete
 }
 
 /// What a search chose.
-struct Choice {
-    end: Measured,
-    steps: Vec<Step>,
-    replacements: Vec<Replacement>,
+pub struct Choice {
+    /// The points.
+    pub end: Measured,
+    /// What was tried when points were added.
+    pub steps: Vec<Step>,
+    /// What was replaced.
+    pub replacements: Vec<Replacement>,
 }
 
 /// Points in their order, the error with the first 1, 2, … of them, and the weights of all.
-struct Measured {
-    points: Vec<u32>,
-    errors: Vec<f64>,
-    weights: Weights,
+pub struct Measured {
+    /// Vertices of the sequence.
+    pub points: Vec<u32>,
+    /// Errors.
+    pub errors: Vec<f64>,
+    /// Weights.
+    pub weights: Weights,
 }
 
 /// The error curve of points in their order.
 ///
 /// On large meshes, `estimates` of it are taken from the coarse mesh, by the factor by which they are wrong at the end;
 /// the end itself is always measured on the mesh. With a sufficient error `enough`, the curve ends there.
-fn measured(
+pub fn measured(
     full: &Full,
     points: &[u32],
     estimates: Option<&[f64]>,
@@ -185,79 +184,8 @@ fn by_the_letter(
     Ok(Choice { end, steps: found.steps, replacements: found.replacements })
 }
 
-fn on_the_coarse_mesh(
-    coarse: &Coarse,
-    full: &Full,
-    parameters: &Parameters,
-    watch: &mut Watch,
-) -> Result<Choice, KeyPointError> {
-    let surface = full.surface;
-    let name = |member: usize| surface.origin[coarse.surface.origin[coarse.candidates[member] as usize] as usize];
-    let (mut steps, mut replacements) = (Vec::new(), Vec::new());
-    watch.begin("adding points", 0.1)?;
-    let mut search = Search::new(coarse, parameters.fit());
-    let mut curve = vec![search.set.error];
-    let mut more = !is_enough(parameters, &curve);
-    loop {
-        watch.begin("adding points", 0.1)?;
-        while more {
-            let done = 0.1 + 0.3 * (1.0 - (-(curve.len() as f64) / STILL as f64).exp());
-            let Some(mut tried) = search.add(&mut || watch.go_on(done)) else {
-                watch.tell(done)?;
-                break;
-            };
-            tried.iter_mut().for_each(|t| t.vertex = surface.origin[t.vertex as usize]);
-            let chosen = search.set.members.last().map_or(0, |&m| name(m));
-            steps.push(Step { tried, chosen, error: search.set.error });
-            curve.push(search.set.error);
-            more = !is_enough(parameters, &curve);
-        }
-        watch.begin("replacing points", 0.4)?;
-        replace(&mut search, &name, &mut replacements, watch)?;
-        watch.begin("ordering points", 0.76)?;
-        let (order, estimates) = search.order(&mut || watch.go_on(0.78)).ok_or(KeyPointError::Cancelled)?;
-        let points: Vec<u32> = order.into_iter().map(name).collect();
-        watch.begin("error curve", 0.8)?;
-        let by_error = parameters.points.is_none() && parameters.stop == Stop::Error;
-        let end = measured(full, &points, Some(&estimates), by_error.then_some(parameters.error), watch)?;
-        // The coarse mesh may have been too hopeful.
-        let reached = end.errors.last().is_none_or(|&error| error <= parameters.error);
-        let most = parameters.max.min(coarse.candidates.len());
-        if !by_error || reached || points.len() >= most {
-            return Ok(Choice { end, steps, replacements });
-        }
-        more = true;
-    }
-}
-
-/// Replaces points in turn until none can be replaced for the better.
-fn replace(
-    search: &mut Search,
-    name: &dyn Fn(usize) -> u32,
-    replacements: &mut Vec<Replacement>,
-    watch: &mut Watch,
-) -> Result<(), KeyPointError> {
-    let count = search.set.members.len();
-    let (mut done, mut idle, mut place) = (0.4, 0, 0);
-    for _ in 0..ROUNDS * count {
-        if idle >= count {
-            break;
-        }
-        done += (0.75 - done) * 0.02;
-        let from = search.set.members[place];
-        let better = search.replace(place, &mut || watch.go_on(done)).ok_or(KeyPointError::Cancelled)?;
-        if better {
-            let (from, to) = (name(from), name(search.set.members[place]));
-            replacements.push(Replacement { from, to, error: search.set.error });
-        }
-        idle = if better { 0 } else { idle + 1 };
-        place = (place + 1) % count;
-    }
-    Ok(())
-}
-
 /// Whether there are points enough; `curve` is the error after each.
-fn is_enough(parameters: &Parameters, curve: &[f64]) -> bool {
+pub fn is_enough(parameters: &Parameters, curve: &[f64]) -> bool {
     if let Some(points) = parameters.points {
         return curve.len() >= points;
     }

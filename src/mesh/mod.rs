@@ -1,4 +1,4 @@
-//! What the algorithms need to know of a triangle mesh: adjacency, pieces, areas, welding.
+//! What the algorithms need to know of a triangle mesh: adjacency, pieces, areas, welding; and what is wrong with it.
 
 pub mod ball;
 pub mod bvh;

@@ -112,11 +112,44 @@ struct Group {
     p: DMat3,
 }
 
-/// A pose brought next to the reference.
-struct Target {
+/// A pose brought next to the reference: what does not depend on handles.
+#[derive(Clone, Debug)]
+pub struct Placed {
+    /// The motion that was taken out; its shift in mesh units.
     motion: RigidMotion,
-    /// #V displacements from the reference, in the unit sphere.
-    displacements: Vec<DVec3>,
+    /// #V displacements from the reference that are left, in the unit sphere.
+    pub displacements: Vec<DVec3>,
+}
+
+impl Placed {
+    /// Takes the best rigid motion out of a pose of #V points. `points` are those of the reference in the unit sphere, of
+    /// `radius` in mesh units; `mass` says how much each counts.
+    pub fn new(points: &[DVec3], mass: &[f64], radius: f64, pose: &[DVec3]) -> Self {
+        let mean = mean(mass, pose);
+        let place = |q: DVec3| (q - mean) / radius;
+        let mut moments = Moments::default();
+        for ((&m, &p), &q) in mass.iter().zip(points).zip(pose) {
+            if m > 0.0 {
+                moments.add(m, p, place(q));
+            }
+        }
+        let mut motion = moments.motion();
+        let back = motion.rotation.transpose();
+        let displacement = |(&p, &q): (&DVec3, &DVec3)| back * (place(q) - motion.translation) - p;
+        let displacements = points.iter().zip(pose).map(displacement).collect();
+        motion.translation = motion.translation * radius + mean;
+        Self { motion, displacements }
+    }
+}
+
+fn mean(mass: &[f64], pose: &[DVec3]) -> DVec3 {
+    let total: f64 = mass.iter().sum();
+    let sum: DVec3 = mass.iter().zip(pose).map(|(&m, &q)| m / total.max(f64::MIN_POSITIVE) * q).sum();
+    if sum.is_finite() { sum } else { DVec3::ZERO }
+}
+
+/// What a pose says to the handles.
+struct Target {
     /// A⁻¹ c (4h × 3), Kᵀ A⁻¹ c (3 #G × 3), `Σ m |d′|²` less tr(cᵀ A⁻¹ c).
     x: Vec<[f64; 3]>,
     pull: Vec<DMat3>,
@@ -171,44 +204,45 @@ impl Fitter {
 
     /// The maps that make the rig follow `pose` (#V points, in the reference's order).
     pub fn fit(&self, pose: &[DVec3]) -> Fit {
-        self.finish(&self.target(pose), |_| ())
+        self.finish(&self.placed(pose), |_| ())
     }
 
     /// The same, with the maps of every round: one list for each of [`Fit::energies`].
     pub fn fit_in_rounds(&self, pose: &[DVec3]) -> (Fit, Vec<Vec<DAffine3>>) {
-        let target = self.target(pose);
+        let placed = self.placed(pose);
+        let target = self.target(&placed);
         let mut rounds = Vec::new();
-        let fit = self.finish(&target, |turns| rounds.push(self.maps(&target.motion, &self.solution(&target, turns))));
+        let fit = self.finish(&placed, |turns| rounds.push(self.maps(&placed.motion, &self.solution(&target, turns))));
         (fit, rounds)
     }
 
-    /// Alternates to the end; `each` sees the turns of every round.
-    fn finish(&self, target: &Target, each: impl FnMut(&[DMat3])) -> Fit {
-        let (turns, energies) = self.alternate(target, each);
-        let x = self.solution(target, &turns);
-        let error = self.error(target, &x);
-        Fit { maps: self.maps(&target.motion, &x), energies, error }
+    /// The pose next to the reference.
+    fn placed(&self, pose: &[DVec3]) -> Placed {
+        Placed::new(&self.points, &self.mass, self.radius, pose)
     }
 
-    /// The pose without its best rigid motion, and what it says to the handles.
-    fn target(&self, pose: &[DVec3]) -> Target {
-        let mean = self.mean(pose);
-        let place = |q: DVec3| (q - mean) / self.radius;
-        let mut moments = Moments::default();
-        for ((&m, &p), &q) in self.mass.iter().zip(&self.points).zip(pose) {
-            if m > 0.0 {
-                moments.add(m, p, place(q));
-            }
-        }
-        let mut motion = moments.motion();
-        let back = motion.rotation.transpose();
-        let displacement = |(&p, &q): (&DVec3, &DVec3)| back * (place(q) - motion.translation) - p;
-        let displacements: Vec<DVec3> = self.points.iter().zip(pose).map(displacement).collect();
-        motion.translation = motion.translation * self.radius + mean;
+    /// Alternates to the end; `each` sees the turns of every round.
+    fn finish(&self, placed: &Placed, each: impl FnMut(&[DMat3])) -> Fit {
+        let target = self.target(placed);
+        let (turns, energies) = self.alternate(&target, each);
+        let x = self.solution(&target, &turns);
+        let error = self.error(placed, &x);
+        Fit { maps: self.maps(&placed.motion, &x), energies, error }
+    }
 
+    /// The error alone of the fit of a pose that is at hand next to the reference.
+    pub fn fit_error(&self, placed: &Placed) -> f64 {
+        let target = self.target(placed);
+        let (turns, _) = self.alternate(&target, |_| ());
+        self.error(placed, &self.solution(&target, &turns))
+    }
+
+    /// What a pose says to the handles.
+    fn target(&self, placed: &Placed) -> Target {
+        let displacements = &placed.displacements;
         let mut c = vec![[0.0; 3]; 4 * self.at.len()];
         let mut constant = 0.0;
-        for (v, (&m, &d)) in self.mass.iter().zip(&displacements).enumerate() {
+        for (v, (&m, &d)) in self.mass.iter().zip(displacements).enumerate() {
             if m <= 0.0 {
                 continue;
             }
@@ -228,12 +262,7 @@ impl Fitter {
         self.factor.solve(&mut x);
         constant -= c.iter().flatten().zip(x.iter().flatten()).map(|(a, b)| a * b).sum::<f64>();
         let pull = self.groups.iter().map(|g| transposed_product(&g.k, &x)).collect();
-        Target { motion, displacements, x, pull, constant }
-    }
-
-    fn mean(&self, pose: &[DVec3]) -> DVec3 {
-        let sum: DVec3 = self.mass.iter().zip(pose).map(|(&m, &q)| m / self.total.max(f64::MIN_POSITIVE) * q).sum();
-        if sum.is_finite() { sum } else { DVec3::ZERO }
+        Target { x, pull, constant }
     }
 
     /// Local and global steps in turn: `N_gᵀ` of every group, and the energy after each round.
@@ -301,9 +330,9 @@ impl Fitter {
     }
 
     /// Mean distance between `Φ X` and the displacements, in unit-sphere radii.
-    fn error(&self, target: &Target, x: &[[f64; 3]]) -> f64 {
+    fn error(&self, placed: &Placed, x: &[[f64; 3]]) -> f64 {
         let mut sum = 0.0;
-        for (v, (&m, &wanted)) in self.mass.iter().zip(&target.displacements).enumerate() {
+        for (v, (&m, &wanted)) in self.mass.iter().zip(&placed.displacements).enumerate() {
             if m <= 0.0 {
                 continue;
             }

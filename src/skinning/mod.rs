@@ -23,7 +23,7 @@ mod gradients;
 mod rows;
 
 pub use clusters::clusters;
-pub use fitter::{Fit, FitParameters, Fitter, Rig};
+pub use fitter::{Fit, FitParameters, Fitter, Placed, Rig};
 pub use gradients::{Ring, features};
 pub use rows::Rows;
 

@@ -6,78 +6,38 @@
 use super::Method;
 use super::alignment::Alignment;
 use super::surface::Surface;
-use glam::{DAffine3, DMat3, DVec3};
-use nalgebra::{Cholesky, DMatrix, Dyn};
+use crate::mesh::laplacian::Laplacian;
+use crate::skinning::{FitParameters, Fitter, Rig, Ring, Rows, clusters, features};
+use glam::{DAffine3, DVec3};
 
-/// How much linear parts are held to the mean deformation around their point.
-const HOLD: f64 = 0.01;
+/// γ_logr and γ_s of Eq. 15, the shares of rotations and of stretches in the groups.
+const GAMMAS: [f64; 2] = [1.0, 0.1];
 
-/// Fits affine motions of the handles of weights to poses, by least squares of the vertices' positions.
-pub struct Fit {
-    basis: Vec<f64>,
-    handles: usize,
-    hold: Vec<f64>,
-    system: Option<Cholesky<f64, Dyn>>,
-}
+/// Poses over which groups are found, the most.
+const POSES: usize = 12;
 
-impl Fit {
-    /// Prepares weights on a surface, #N rows × #H.
-    pub fn new(surface: &Surface, weights: &[f64], handles: usize) -> Self {
-        let width = 4 * handles;
-        let mut basis = Vec::with_capacity(surface.len() * width);
-        for (v, p) in surface.positions.iter().enumerate() {
-            for &w in &weights[v * handles..(v + 1) * handles] {
-                basis.extend([w * p.x, w * p.y, w * p.z, w]);
-            }
-        }
-        let rows = DMatrix::from_row_slice(surface.len(), width, &basis);
-        let mut weighted = rows.clone();
-        let mut hold = vec![1e-9; handles];
-        for (v, &m) in surface.mass.iter().enumerate() {
-            weighted.row_mut(v).scale_mut(m);
-            for (h, w) in hold.iter_mut().zip(&weights[v * handles..(v + 1) * handles]) {
-                *h += HOLD * m * w * w;
-            }
-        }
-        let mut system = weighted.tr_mul(&rows);
-        for (i, h) in hold.iter().enumerate() {
-            (0..3).for_each(|k| system[(4 * i + k, 4 * i + k)] += h);
-            system[(4 * i + 3, 4 * i + 3)] += 1e-12;
-        }
-        Self { basis, handles, hold, system: system.cholesky() }
-    }
-
-    /// The maps of the handles in one pose.
-    pub fn maps(&self, surface: &Surface, pose: &[DVec3]) -> Vec<DAffine3> {
-        let width = 4 * self.handles;
-        let mut side = DMatrix::zeros(width, 3);
-        let mut motions = vec![crate::linalg::rigid_fit::Moments::default(); self.handles];
-        for (v, row) in self.basis.chunks_exact(width.max(1)).enumerate() {
-            let (m, q) = (surface.mass[v], pose[v]);
-            for (i, b) in row.iter().enumerate() {
-                (0..3).for_each(|k| side[(i, k)] += m * b * q[k]);
-            }
-            for (moments, quad) in motions.iter_mut().zip(row.chunks_exact(4)) {
-                moments.add(m * quad[3] * quad[3], surface.positions[v], q);
-            }
-        }
-        for (i, moments) in motions.iter().enumerate() {
-            let turn = moments.motion().rotation.to_cols_array_2d();
-            for (row, column) in turn.iter().enumerate() {
-                (0..3).for_each(|k| side[(4 * i + row, k)] += self.hold[i] * column[k]);
-            }
-        }
-        let Some(system) = &self.system else { return vec![DAffine3::IDENTITY; self.handles] };
-        system.solve_mut(&mut side);
-        let column = |r: usize| DVec3::new(side[(r, 0)], side[(r, 1)], side[(r, 2)]);
-        (0..self.handles)
-            .map(|i| {
-                let linear = DMat3::from_cols(column(4 * i), column(4 * i + 1), column(4 * i + 2));
-                DAffine3::from_mat3_translation(linear, column(4 * i + 3))
-            })
-            .map(|map| if map.is_finite() { map } else { DAffine3::IDENTITY })
-            .collect()
-    }
+/// Fits the motions of key points of a surface to its poses (Eq. 3–5, 15), whose weights are #N rows × #H, row-major.
+///
+/// `points` are their places; `poses` tell which vertices move alike, all in the unit ball.
+pub fn fitter(surface: &Surface, points: &[u32], weights: &[f64], poses: &[Vec<DVec3>]) -> Fitter {
+    let Laplacian { edges, cotangents: stiffness, .. } = Laplacian::new(&surface.faces, &surface.positions);
+    let ring = Ring { faces: &surface.faces, edges: &edges, stiffness: &stiffness, reference: &surface.positions };
+    let step = poses.len().div_ceil(POSES).max(1);
+    let seen: Vec<&[DVec3]> = poses.iter().step_by(step).map(Vec::as_slice).collect();
+    let [turn, shear] = GAMMAS;
+    let features = features(&ring, &seen, turn, shear);
+    let groups = clusters(weights, &features, points, &surface.mass);
+    let rig = Rig {
+        reference: &surface.positions,
+        edges: &edges,
+        stiffness: &stiffness,
+        mass: &surface.mass,
+        handles: points,
+        weights: &Rows::new(weights, points.len()),
+        groups: &groups,
+        ball: (DVec3::ZERO, 1.0),
+    };
+    Fitter::new(&rig, &FitParameters::default())
 }
 
 /// The motion of a key point on the target, of its motion on the source; `pair` are the two points, all in unit balls.

@@ -16,6 +16,7 @@ mod error;
 pub mod gradients;
 pub mod joints;
 pub mod kd_tree;
+pub mod mend;
 mod parameters;
 pub mod posed;
 mod prepared;

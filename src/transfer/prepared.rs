@@ -1,9 +1,10 @@
 //! The transfer between one source and one target, ready for any pairs.
 
 use super::alignment::{Alignment, align};
-use super::biharmonic::{Fit, carried};
+use super::biharmonic::{self, carried};
 use super::joints::Joints;
-use super::registration::{Foot, Ground, Pin, Registration, feet};
+use super::mend;
+use super::registration::{Effort, Foot, Ground, LOST, Pin, Registration, feet};
 use super::rig::Rig;
 use super::rig::weights::{averaged, normalised};
 use super::spline::Spline;
@@ -12,6 +13,7 @@ use super::{Method, Pair, Parameters, Skin, Transfer, TransferError};
 use crate::clock;
 use crate::observer::Observer;
 use crate::sequence::Sequence;
+use crate::skinning::Fitter;
 use crate::warning::Warning;
 use crate::weights::{self, Biharmonic, Weights};
 use glam::{DAffine3, DVec3};
@@ -24,6 +26,8 @@ const SMOOTHED: usize = 3000;
 const MOST_SMOOTHING: usize = 24;
 /// How far the shape that the bent target keeps is that which the pairs suggest, not its own.
 const BELIEF: f64 = 0.5;
+/// While a point is dragged, every so manieth pose is looked at for tears.
+const FEWER: usize = 3;
 /// Bones that a vertex of the target may follow.
 const INFLUENCES: usize = 8;
 /// Above this mean distance of the skinned source from the true one, in radii, a person is told.
@@ -36,14 +40,27 @@ pub struct Prepared {
     target: Surface,
     poses: Vec<Vec<DVec3>>,
     rig: Rig,
+    /// By how much edges of the target may become longer.
+    allowed: f64,
     ground: Ground,
     registration: Registration,
     /// Of the source and of the target, for the methods that blend by the weights of the key points.
     weights: Option<[Biharmonic; 2]>,
-    /// The bent target of the result before, from which the next starts while a point is dragged.
+    /// The bent target of the result before, from which the next starts while a point is dragged; or its weights.
     last: Option<Vec<DVec3>>,
+    last_weights: Option<[Weights; 2]>,
+    /// How motions of the source become motions of the target's handles, since the last result.
+    carrier: Option<Carrier>,
     warnings: Vec<Warning>,
     seconds: Vec<(&'static str, f64)>,
+}
+
+/// What turns a pose of the source into motions of the target's handles.
+enum Carrier {
+    /// Of the bones.
+    Bones(Joints),
+    /// Of the key points, which lie at `points` on the source and on the target.
+    KeyPoints { method: Method, fitter: Box<Fitter>, points: Vec<(DVec3, DVec3)>, alignment: Alignment },
 }
 
 /// Seconds by step, and the observer asked at each.
@@ -91,13 +108,16 @@ impl Prepared {
             Method::Direct | Method::Relative => Rig::default(),
         };
         steps.end("bones", 0.9)?;
+        let of_source: Vec<&[DVec3]> = source.poses().iter().map(|pose| pose.positions.as_slice()).collect();
         let weights = match parameters.method {
             Method::Bones | Method::Gradients | Method::Posed => None,
             Method::Direct | Method::Relative => Some([
-                Biharmonic::new(source.faces(), source.reference())?,
+                Biharmonic::with_poses(source.faces(), source.reference(), &of_source)?,
                 Biharmonic::new(target.faces(), target.reference())?,
             ]),
         };
+        let telling: Vec<&[DVec3]> = rig.telling.iter().filter_map(|&p| Some(poses.get(p)?.as_slice())).collect();
+        let allowed = mend::allowed(&here, &telling);
         let ground = Ground::new(&here);
         steps.end("search", 1.0)?;
         let mut warnings = Vec::new();
@@ -118,10 +138,13 @@ impl Prepared {
             target: there,
             poses,
             rig,
+            allowed,
             ground,
             registration,
             weights,
             last: None,
+            last_weights: None,
+            carrier: None,
             warnings,
             seconds: steps.seconds,
         })
@@ -143,6 +166,21 @@ impl Prepared {
         self.run(pairs, true, observer)
     }
 
+    /// The maps of the target's handles, those of the skin of the last result, for any other pose of the source: #V
+    /// positions of the source's vertices. [`Skin::posed`] puts the target there. `None` before there was a result, or if
+    /// positions are missing or not finite.
+    pub fn maps(&self, pose: &[DVec3]) -> Option<Vec<DAffine3>> {
+        let carrier = self.carrier.as_ref()?;
+        if pose.len() != self.source.place.len() || !pose.iter().all(|p| p.is_finite()) {
+            return None;
+        }
+        let pose = self.source.unit(pose);
+        Some(match carrier {
+            Carrier::Bones(joints) => self.outward(&joints.carry(&self.rig.follow(&self.source, &pose))),
+            carrier => self.by_points(carrier, &pose),
+        })
+    }
+
     fn run(&mut self, pairs: &[Pair], quick: bool, observer: &mut dyn Observer) -> Result<Transfer, TransferError> {
         let mut steps = Steps::new(observer);
         let mut warnings = self.warnings.clone();
@@ -154,14 +192,18 @@ impl Prepared {
                 let last = self.last.take().filter(|_| quick);
                 let bent = self.bend(&pairs, &points, alignment, last);
                 steps.end("correspondence", 0.8)?;
-                let skin = self.by_bones(alignment, &bent);
+                let (skin, joints) = self.by_bones(alignment, &bent, if quick { FEWER } else { 1 });
                 self.last = Some(bent);
+                self.carrier = Some(Carrier::Bones(joints));
                 skin
             }
             method => {
-                let weights = self.weights_of(&pairs)?;
+                let weights = self.weights_of(&pairs, self.last_weights.as_ref().filter(|_| quick))?;
+                self.last_weights = Some(weights.clone());
                 steps.end("weights", 0.8)?;
-                self.by_key_points(method, &pairs, &points, alignment, weights)
+                let (skin, carrier) = self.by_key_points(method, &pairs, points, alignment, weights);
+                self.carrier = Some(carrier);
+                skin
             }
         };
         steps.end("maps", 1.0)?;
@@ -242,21 +284,30 @@ impl Prepared {
         // belong: proportions differ, and so do poses.
         let placed = splined(&rest, &rest, &pins);
         let shape: Vec<DVec3> = rest.iter().zip(&placed).map(|(r, p)| r.lerp(*p, BELIEF)).collect();
-        let quick = last.is_some();
+        let effort = if last.is_some() { Effort::Last } else { Effort::Whole };
         let start = last.map_or(placed, |last| splined(&rest, &last, &pins));
-        self.registration.bend((&self.source, &self.ground), target, &shape, start, &pins, quick)
+        self.registration.bend((&self.source, &self.ground), target, &shape, start, &pins, effort)
     }
 
-    fn by_bones(&self, alignment: Alignment, bent: &[DVec3]) -> Skin {
+    /// Every `step`th of the telling poses is looked at for tears.
+    fn by_bones(&self, alignment: Alignment, bent: &[DVec3], step: usize) -> (Skin, Joints) {
         let feet = feet(&self.source, &self.ground, &self.target, bent);
-        let mut rows: Vec<Vec<(u32, f64)>> = feet.iter().map(|foot| self.pulled(*foot)).collect();
+        let mut rows: Vec<Vec<(u32, f64)>> = feet.iter().map(|foot| self.pulled(foot.map(|f| f.0))).collect();
+        let lost: Vec<bool> = feet.iter().map(|foot| foot.is_none_or(|f| f.1 > LOST)).collect();
+        mend::fill(&self.target, &mut rows, &lost);
         let rounds = (SMOOTHING * self.target.len()).div_ceil(SMOOTHED).clamp(2, MOST_SMOOTHING);
         for _ in 0..rounds {
             rows = averaged(&self.target, &rows, INFLUENCES);
         }
-        let joints = Joints::new(&self.source, &self.rig, &self.target, &rows, alignment);
+        let joints = |rows: &[Vec<(u32, f64)>]| Joints::new(&self.source, &self.rig, &self.target, rows, alignment);
+        let first = joints(&rows);
+        let seen = self.rig.telling.iter().step_by(step).filter_map(|&pose| self.rig.maps.get(pose));
+        let seen: Vec<Vec<DAffine3>> = seen.map(|maps| first.carry(maps)).collect();
+        let seen: Vec<&[DAffine3]> = seen.iter().map(Vec::as_slice).collect();
+        mend::close(&self.target, &mut rows, &seen, self.allowed, INFLUENCES);
+        let joints = joints(&rows);
         let maps = self.rig.maps.iter().map(|maps| self.outward(&joints.carry(maps))).collect();
-        self.skin(self.rig.bones, &rows, maps)
+        (self.skin(self.rig.bones, &rows, maps), joints)
     }
 
     /// The weights of the source at a place on it.
@@ -274,32 +325,31 @@ impl Prepared {
         normalised(row)
     }
 
-    /// The weights of the key points on the source and on the target.
-    fn weights_of(&self, pairs: &[Pair]) -> Result<[Weights; 2], TransferError> {
+    /// The weights of the key points on the source and on the target, from those `before` if there are any.
+    fn weights_of(&self, pairs: &[Pair], before: Option<&[Weights; 2]>) -> Result<[Weights; 2], TransferError> {
         let Some([here, there]) = &self.weights else { return Err(TransferError::NoPairs) };
         let [sources, targets] = [|pair: &Pair| pair.source, |pair: &Pair| pair.target]
             .map(|side| pairs.iter().map(side).collect::<Vec<u32>>());
         let parameters = weights::Parameters::default();
-        Ok([here.weights(&sources, &parameters)?, there.weights(&targets, &parameters)?])
+        Ok(match before {
+            Some([a, b]) => [here.update(a, &sources, &parameters)?, there.update(b, &targets, &parameters)?],
+            None => [here.weights(&sources, &parameters)?, there.weights(&targets, &parameters)?],
+        })
     }
 
     fn by_key_points(
         &self,
         method: Method,
         pairs: &[Pair],
-        points: &[(DVec3, DVec3)],
+        points: Vec<(DVec3, DVec3)>,
         alignment: Alignment,
         [here, weights]: [Weights; 2],
-    ) -> Skin {
+    ) -> (Skin, Carrier) {
         let rows: Vec<f64> = self.source.vertex.iter().flat_map(|&v| here.row(v as usize).iter().copied()).collect();
-        let fit = Fit::new(&self.source, &rows, pairs.len());
-        let of_pose = |pose: &Vec<DVec3>| {
-            let maps = fit.maps(&self.source, pose);
-            let there: Vec<DAffine3> =
-                maps.iter().zip(points).map(|(map, &pair)| carried(method, alignment, pair, map)).collect();
-            self.outward(&there)
-        };
-        let maps = self.poses.iter().map(of_pose).collect();
+        let places: Vec<u32> = pairs.iter().map(|pair| self.source.place[pair.source as usize]).collect();
+        let fitter = Box::new(biharmonic::fitter(&self.source, &places, &rows, &self.poses));
+        let carrier = Carrier::KeyPoints { method, fitter, points, alignment };
+        let maps = self.poses.iter().map(|pose| self.by_points(&carrier, pose)).collect();
         let row = |&v: &u32| {
             let shares = weights.row(v as usize).iter().zip(0_u32..).map(|(&w, h)| (h, w));
             let mut row: Vec<(u32, f64)> = shares.filter(|entry| entry.1 > 0.0).collect();
@@ -309,7 +359,16 @@ impl Prepared {
         let rows: Vec<Vec<(u32, f64)>> = self.target.vertex.iter().map(row).collect();
         let mut skin = self.skin(pairs.len(), &rows, maps);
         skin.handles = pairs.iter().map(|pair| pair.target).collect();
-        skin
+        (skin, carrier)
+    }
+
+    /// The maps of the key points on the target for a pose in the source's unit ball.
+    fn by_points(&self, carrier: &Carrier, pose: &[DVec3]) -> Vec<DAffine3> {
+        let Carrier::KeyPoints { method, fitter, points, alignment } = carrier else { return Vec::new() };
+        let maps = fitter.fit(pose).maps;
+        let there: Vec<DAffine3> =
+            maps.iter().zip(points).map(|(map, &pair)| carried(*method, *alignment, pair, map)).collect();
+        self.outward(&there)
     }
 
     /// Maps in the target's unit ball as maps in its own units.

@@ -11,6 +11,7 @@
 
 mod consensus;
 mod paths;
+mod refine;
 mod similarity;
 mod starts;
 mod surface;
@@ -18,6 +19,7 @@ mod tips;
 
 use consensus::{Consensus, LAST, Point, Rules, Target};
 use glam::DVec3;
+use refine::{Found, Refiner};
 use serde::Serialize;
 use surface::{SAMPLES, Surface};
 
@@ -29,6 +31,12 @@ const CONSIDERED: usize = 400;
 
 /// How much is listened to a point asked for, where a sample counts one: users' points may lie close together.
 const ASKED: f64 = 0.3;
+
+/// Opinions that are not farther apart than this are both half right.
+const ALIKE: f64 = 0.04;
+
+/// What more a place may cost that the surfaces themselves suggest: another leg costs more.
+const DEARER: f64 = 0.003;
 
 /// A proposed target point.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
@@ -77,12 +85,12 @@ pub enum ProposeError {
 }
 
 /// Two meshes, prepared for proposals.
-#[derive(Clone, Debug)]
 pub struct Proposer {
     source: Surface,
     target: Surface,
     /// How the figures lie over each other as far as shapes alone tell.
     orientations: Vec<starts::Orientation>,
+    refiner: Option<Refiner>,
 }
 
 impl Proposer {
@@ -98,7 +106,8 @@ impl Proposer {
     ) -> Result<Self, ProposeError> {
         let source = Surface::new(source_faces, source_positions, SAMPLES).ok_or(ProposeError::Empty("source"))?;
         let target = Surface::new(target_faces, target_positions, SAMPLES).ok_or(ProposeError::Empty("target"))?;
-        let mut proposer = Self { source, target, orientations: Vec::new() };
+        let refiner = Refiner::new(&source, &target);
+        let mut proposer = Self { source, target, orientations: Vec::new(), refiner };
         proposer.orientations = starts::orientations(&proposer);
         Ok(proposer)
     }
@@ -175,17 +184,35 @@ impl Proposer {
 
     fn read(&self, consensus: &Consensus, points: &[u32], known: &[Option<u32>]) -> Proposals {
         let first = consensus.at.len() - points.len();
+        let found = self.refiner.as_ref().map(|refiner| Found::new(&self.target, refiner.bent(consensus)));
         let proposal = |(i, known): (usize, &Option<u32>)| {
             if let Some(target) = known {
                 return Proposal { target: *target, confidence: 1.0 };
             }
-            let (target, cost) = consensus.vertex(first + i, &LAST).unwrap_or((self.target.samples[0], 1.0));
+            let (agreed, cost) = consensus.vertex(first + i, &LAST).unwrap_or((self.target.samples[0], 1.0));
+            let v = points[i] as usize;
+            let settled =
+                found.as_ref().and_then(|found| found.vertex(self.source.points[v], self.source.vertex_normals[v]));
+            let price = consensus.price(first + i, &LAST);
+            let target = match (settled, price) {
+                (Some(settled), Some(price)) if price(settled) < cost + DEARER => self.between(agreed, settled),
+                _ => agreed,
+            };
             Proposal { target, confidence: (-cost / 0.004).exp().clamp(0.0, 0.99) }
         };
         let points: Vec<Proposal> = known.iter().enumerate().map(proposal).collect();
         let unknown = (0..points.len()).filter(|&i| known[i].is_none());
         let next = unknown.min_by(|&a, &b| points[a].confidence.total_cmp(&points[b].confidence));
         Proposals { points, next }
+    }
+}
+
+impl Proposer {
+    /// Of two opinions that differ little, the middle; of two that differ much, the second.
+    fn between(&self, agreed: u32, settled: u32) -> u32 {
+        let apart = self.target.points[agreed as usize].distance(self.target.points[settled as usize]);
+        let share = 0.5 + 0.5 * ((apart - ALIKE) / ALIKE).clamp(0.0, 1.0);
+        self.target.between(agreed, settled, share)
     }
 }
 

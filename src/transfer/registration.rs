@@ -20,6 +20,9 @@ const ROUNDS: usize = 2;
 const NORMAL: f64 = 0.2;
 /// Cosine between normals below which a nearest point is none.
 const AGREE: f64 = 0.3;
+/// What lies farther from the source than this, in its radii, after the first rounds of growth has no twin there.
+pub const LOST: f64 = 0.08;
+const ROUGH: usize = 2;
 /// Cotangents are kept above this: obtuse triangles do not push.
 const LEAST_COTANGENT: f64 = 0.01;
 
@@ -72,6 +75,17 @@ pub struct Pin {
     pub point: DVec3,
 }
 
+/// How many rounds are done.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Effort {
+    /// All.
+    Whole,
+    /// One with each strength of the pull.
+    Once,
+    /// The last ones, for a start that was a result before.
+    Last,
+}
+
 /// The target as something to be bent, with its factored systems.
 pub struct Registration {
     edges: Vec<([u32; 2], f64)>,
@@ -100,8 +114,7 @@ impl Registration {
 
     /// Bends the target onto the source: #N positions of its vertices near the source's surface.
     ///
-    /// `rest` has the shape that is kept, `start` is where the target is thought to end. `quick` is for a start
-    /// that was a result before: only the last rounds are done.
+    /// `rest` has the shape that is kept, `start` is where the target is thought to end.
     pub fn bend(
         &self,
         (source, ground): (&Surface, &Ground),
@@ -109,13 +122,18 @@ impl Registration {
         rest: &[DVec3],
         start: Vec<DVec3>,
         pins: &[Pin],
-        quick: bool,
+        effort: Effort,
     ) -> Vec<DVec3> {
         let mut at = start;
-        let first = if quick { PULLS.len() - 2 } else { 0 };
+        let (first, rounds) = match effort {
+            Effort::Whole => (0, ROUNDS),
+            Effort::Once => (0, 1),
+            Effort::Last => (PULLS.len() - 2, 1),
+        };
         for level in first..PULLS.len() {
-            for _ in 0..if quick { 1 } else { ROUNDS } {
-                let mut goal = goals(source, ground, target, &at);
+            for _ in 0..rounds {
+                let reach = if level < ROUGH { f64::INFINITY } else { LOST };
+                let mut goal = goals(source, ground, target, &at, reach);
                 pins.iter().for_each(|pin| goal[pin.vertex as usize] = pin.point);
                 self.solve(level, target, rest, &mut at, &goal);
             }
@@ -162,20 +180,25 @@ impl Registration {
     }
 }
 
-/// For each vertex the nearest place of the source, or where it is if that faces another way.
-fn goals(source: &Surface, ground: &Ground, target: &Surface, at: &[DVec3]) -> Vec<DVec3> {
+/// For each vertex the nearest place of the source, or where it is if that faces another way or is farther than `lost`.
+fn goals(source: &Surface, ground: &Ground, target: &Surface, at: &[DVec3], lost: f64) -> Vec<DVec3> {
     let normals = target.normals_of(at);
     at.iter()
         .zip(&normals)
         .map(|(&p, &n)| match ground.foot(source, p, n) {
-            Some((_, foot, vertex)) if source.normals[vertex as usize].dot(n) > AGREE => foot,
+            Some((_, foot, vertex))
+                if source.normals[vertex as usize].dot(n) > AGREE && foot.distance_squared(p) < lost * lost =>
+            {
+                foot
+            }
             _ => p,
         })
         .collect()
 }
 
-/// For each vertex of the bent target its place on the source.
-pub fn feet(source: &Surface, ground: &Ground, target: &Surface, at: &[DVec3]) -> Vec<Option<Foot>> {
+/// For each vertex of the bent target its place on the source, and how far that is.
+pub fn feet(source: &Surface, ground: &Ground, target: &Surface, at: &[DVec3]) -> Vec<Option<(Foot, f64)>> {
     let normals = target.normals_of(at);
-    at.iter().zip(&normals).map(|(&p, &n)| ground.foot(source, p, n).map(|found| found.0)).collect()
+    let foot = |(&p, &n)| ground.foot(source, p, n).map(|(foot, place, _)| (foot, place.distance(p)));
+    at.iter().zip(&normals).map(foot).collect()
 }

@@ -16,6 +16,11 @@ pub struct Spline {
 impl Spline {
     /// Interpolates displacements at points that differ; near repetitions are met in the mean.
     pub fn new(known: &[(DVec3, DVec3)]) -> Self {
+        Self::loose(known, RIDGE)
+    }
+
+    /// Displacements that are not exact are smoothed over: the more, the larger `ridge`, a length.
+    pub fn loose(known: &[(DVec3, DVec3)], ridge: f64) -> Self {
         let n = known.len();
         let points: Vec<DVec3> = known.iter().map(|k| k.0).collect();
         let constant = known.iter().map(|k| k.1).sum::<DVec3>() / n.max(1) as f64;
@@ -27,7 +32,7 @@ impl Spline {
             }
             // −|x| is positive definite over kernels that sum to zero; more on the diagonal lets displacements of points
             // that nearly coincide differ without large kernels.
-            system[(i, i)] = RIDGE;
+            system[(i, i)] = ridge;
             system[(i, n)] = 1.0;
             system[(n, i)] = 1.0;
             (0..3).for_each(|k| side[(i, k)] = known[i].1[k]);

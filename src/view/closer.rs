@@ -8,7 +8,7 @@ use glam::Vec3;
 const LOOKED_FOR: usize = 40;
 
 /// The camera comes no nearer than this, in radii of the scene: what lies around is to be seen, too.
-const NEAREST: f32 = 1.6;
+const NEAREST: f32 = 2.0;
 
 /// Directions around the figure that are tried, and how far they look down, radians.
 const AROUND: usize = 8;

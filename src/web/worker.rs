@@ -13,8 +13,9 @@ mod sequences;
 mod values;
 
 use crate::export::{glb, rigid};
-use crate::import::{self, Options};
+use crate::import::{self, Imported, Options};
 use crate::keypoints;
+use crate::memory::{self, Step};
 use crate::segmentation::{Parameters, Segmentation, Segmenter, Steps};
 use crate::sequence::Sequence;
 use crate::transfer::gradients::Mover;
@@ -27,7 +28,7 @@ use glam::DVec3;
 use js_sys::{Array, Function, Object, Uint8Array, Uint32Array};
 use sequences::{describe, kept_sequence, rounded};
 use serde::Serialize;
-use values::{Reply, parsed, plain, put, read_file, sentence, single, triples};
+use values::{Reply, parsed, plain, put, read_files, sentence, single, triples};
 use wasm_bindgen::prelude::*;
 
 /// The open sequences and what is done with them.
@@ -83,12 +84,19 @@ impl Engine {
     /// Opens files, `[{name, bytes: Uint8Array}]`, with [`Options`] in their serde form. What was open stays open
     /// if they cannot be read.
     pub fn open(&mut self, files: &Array, options: JsValue) -> Reply {
-        let files = files.iter().map(|file| read_file(&file)).collect::<Result<Vec<_>, _>>()?;
         let options: Options = parsed(options)?;
-        let imported = import::open(&files, &options).map_err(sentence)?;
-        let sequence = rounded(&imported.sequence)?;
-        let reply = describe(&sequence, &imported.clips, imported.clip, &imported.warnings)?;
-        self.replace(sequence);
+        let imported = import::open(&read_files(files)?, &options).map_err(sentence)?;
+        self.opened(&imported)
+    }
+
+    /// Opens files after a mesh that stands still and was opened from `still`: as its poses, where they are. Then the
+    /// reply has `joined`, otherwise it is that of [`Engine::open`].
+    pub fn open_more(&mut self, still: &Array, files: &Array, options: JsValue) -> Reply {
+        let options: Options = parsed(options)?;
+        let (still, files) = (read_files(still)?, read_files(files)?);
+        let (imported, joined) = import::open_more(&still, &files, &options).map_err(sentence)?;
+        let reply = self.opened(&imported)?;
+        put(&reply, "joined", &joined.into())?;
         Ok(reply)
     }
 
@@ -164,11 +172,24 @@ impl Engine {
     }
 
     fn grow(&self, parameters: &Parameters, progress: &Function) -> Result<Segmenter, JsValue> {
+        self.room_for(Step::Segmentation, self.open_sequence()?)?;
         Segmenter::new(self.open_sequence()?, parameters, &mut watcher(progress)).map_err(sentence)
     }
 
     fn open_sequence(&self) -> Result<&Sequence, JsValue> {
         self.sequence.as_ref().ok_or_else(|| sentence("Nothing is open yet."))
+    }
+
+    fn opened(&mut self, imported: &Imported) -> Reply {
+        let sequence = rounded(&imported.sequence)?;
+        let reply = describe(&sequence, &imported.clips, imported.clip, &imported.warnings)?;
+        self.replace(sequence);
+        Ok(reply)
+    }
+
+    /// Refuses a step for which there is not memory enough, beside what is open.
+    fn room_for(&self, step: Step, of: &Sequence) -> Result<(), JsValue> {
+        memory::check(step, of, self.sequence.iter().chain(&self.target), memory::LIMIT).map_err(sentence)
     }
 
     fn replace(&mut self, sequence: Sequence) {

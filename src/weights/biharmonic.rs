@@ -4,6 +4,7 @@ use super::box_problem::{self, Column, State};
 use super::follow;
 use super::joint;
 use super::levels::{self, Level};
+use super::side_by_side::each;
 use super::surface::Surface;
 use super::{Parameters, Weights, WeightsError};
 use crate::warning::Warning;
@@ -48,7 +49,7 @@ impl Biharmonic {
     /// The weights of handles, which are vertices of the mesh as given.
     pub fn weights(&self, handles: &[u32], parameters: &Parameters) -> Result<Weights, WeightsError> {
         let places = self.places(handles)?;
-        let columns = (0..handles.len()).map(|j| self.column(&places, j)).collect();
+        let columns = each(handles.len(), |j| self.column(&places, j));
         Ok(self.finish(handles, &places, columns, parameters))
     }
 
@@ -62,15 +63,13 @@ impl Biharmonic {
         let places = self.places(handles)?;
         let old_places = self.places(&before.handles)?;
         let old = |place: u32| old_places.iter().position(|&p| p == place).and_then(|i| before.raw.get(i));
-        let columns = (0..handles.len())
-            .map(|j| match old(places[j]) {
-                Some(column) => self.updated(column, &places, &old_places, j),
-                None => match self.moved(before, &places, &old_places, j) {
-                    Some(column) => self.carried(column, &places, j),
-                    None => self.column(&places, j),
-                },
-            })
-            .collect();
+        let columns = each(handles.len(), |j| match old(places[j]) {
+            Some(column) => self.updated(column, &places, &old_places, j),
+            None => match self.moved(before, &places, &old_places, j) {
+                Some(column) => self.carried(column, &places, j),
+                None => self.column(&places, j),
+            },
+        });
         Ok(self.finish(handles, &places, columns, parameters))
     }
 

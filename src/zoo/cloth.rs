@@ -39,7 +39,7 @@ pub fn cloth(recipe: &Recipe) -> Cloth {
     let quad = |i: u32, j: u32| {
         let [a, b, c, d] = [corner(i, j), corner(i + 1, j), corner(i + 1, j + 1), corner(i, j + 1)];
         // Diagonals alternate, so that no direction is preferred.
-        if (i + j) % 2 == 0 { [[a, b, c], [a, c, d]] } else { [[a, b, d], [b, c, d]] }
+        if (i + j).is_multiple_of(2) { [[a, b, c], [a, c, d]] } else { [[a, b, d], [b, c, d]] }
     };
     let faces = (0..rows).flat_map(|j| (0..columns).flat_map(move |i| quad(i, j))).collect();
     Cloth { places, faces }

@@ -248,13 +248,10 @@ fn areas() -> Vec<Sequence> {
 
 fn motions() -> Vec<Sequence> {
     let (faces, points) = closed_tube(8);
-    let mirrored = |p: &DVec3| DVec3::new(-p.x, p.y, p.z);
-    let poses = bent(&points, 4);
-    let mirror: Vec<Vec<DVec3>> = poses
-        .iter()
-        .enumerate()
-        .map(|(k, pose)| if k == 2 { pose.iter().map(mirrored).collect() } else { pose.clone() })
-        .collect();
+    // A tube has a mirror image that is a turn of itself; one that winds like a screw has none.
+    let screw: Vec<DVec3> = points.iter().map(|p| *p + DVec3::new(0.0, (1.5 * p.x).sin(), (1.5 * p.x).cos())).collect();
+    let mut mirror = bent(&screw, 4);
+    mirror[2].iter_mut().for_each(|p| p.x = -p.x);
     let flat: Vec<DVec3> = points.iter().map(|p| DVec3::new(p.x, p.y, 0.0)).collect();
     // Every vertex somewhere else.
     let noise = |k: usize| {
@@ -265,7 +262,7 @@ fn motions() -> Vec<Sequence> {
         sequence("still", &faces, &points, &[]),
         sequence("poses that are the reference", &faces, &points, &vec![points.clone(); 3]),
         sequence("one pose", &faces, &points, &bent(&points, 1)),
-        sequence("a mirrored pose", &faces, &points, &mirror),
+        sequence("a mirrored pose", &faces, &screw, &mirror),
         sequence("a flat pose", &faces, &points, &[flat]),
         sequence("noise", &faces, &points, &(0..4).map(noise).collect::<Vec<_>>()),
     ]

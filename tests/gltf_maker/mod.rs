@@ -1,5 +1,9 @@
 //! Small glTF documents for tests.
 
+mod draco;
+pub mod meshopt;
+
+pub use draco::{draco_mesh, draco_triangle};
 use serde_json::{Value, json};
 
 /// A document and its one buffer.
@@ -30,6 +34,44 @@ pub fn triangle() -> Maker {
 /// The bytes of numbers.
 pub fn f32s(numbers: &[f32]) -> Vec<u8> {
     numbers.iter().flat_map(|x| x.to_le_bytes()).collect()
+}
+
+/// A skin of two joints in a frame that lies on its side and is a hundred times too large, as exporters make them.
+pub fn skinned() -> Maker {
+    let mut maker = triangle();
+    let joints = maker.accessor(&[0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0], 5121, "VEC4", 3);
+    // The second vertex's weights do not add up to 1, the third follows both joints alike.
+    let weights = maker.accessor(&[255, 0, 0, 0, 51, 0, 0, 0, 128, 128, 0, 0], 5121, "VEC4", 3);
+    maker.json["accessors"][weights]["normalized"] = json!(true);
+    let attributes = &mut maker.json["meshes"][0]["primitives"][0]["attributes"];
+    attributes["JOINTS_0"] = json!(joints);
+    attributes["WEIGHTS_0"] = json!(weights);
+    // Inverse binds: the first joint at the origin, the second at x = 1 of the mesh's frame.
+    let identity = [1., 0., 0., 0., 0., 1., 0., 0., 0., 0., 1., 0., 0., 0., 0., 1.];
+    let mut second = identity;
+    second[12] = -1.0;
+    let binds = maker.accessor(&f32s(&[identity, second].concat()), 5126, "MAT4", 2);
+    maker.json["skins"] = json!([{"joints": [2, 3], "inverseBindMatrices": binds}]);
+    let half = std::f64::consts::FRAC_1_SQRT_2;
+    maker.json["nodes"] = json!([
+        {"mesh": 0, "skin": 0, "translation": [9, 9, 9]},
+        {"children": [2], "rotation": [-half, 0, 0, half], "scale": [0.01, 0.01, 0.01]},
+        {"children": [3]},
+        {"translation": [1, 0, 0]},
+    ]);
+    maker.json["scenes"] = json!([{"nodes": [0, 1]}]);
+    maker
+}
+
+/// A skin, a morph target and a clip of each interpolation.
+pub fn rich() -> Maker {
+    let mut maker = skinned();
+    let offsets = maker.accessor(&f32s(&[0., 0., 1., 0., 0., 0., 0., 0., 0.]), 5126, "VEC3", 3);
+    maker.json["meshes"][0]["primitives"][0]["targets"] = json!([{"POSITION": offsets}]);
+    maker.animate("weights", "CUBICSPLINE", &[0.0, 1.0], &[0., 0., 1., 1., 4., 0.], "SCALAR");
+    maker.animate("translation", "STEP", &[0.0, 1.0], &[0., 0., 0., 1., 0., 0.], "VEC3");
+    maker.animate("rotation", "LINEAR", &[0.0, 1.0], &[0., 0., 0., 1., 0., 1., 0., 0.], "VEC4");
+    maker
 }
 
 impl Maker {

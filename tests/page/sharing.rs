@@ -69,8 +69,8 @@ fn a_frame_shows_the_picture_with_or_without_controls() {
     let source = |page: &mut Page, kind: &str| {
         let code = page.evaluate(&format!(
             "import(new URL('www/share.js', location.href)).then(({{ embedCode }}) => {{
-            const box = document.createElement('template'); box.innerHTML = embedCode(sinew.app, sinew.app.timeline, '{kind}');
-            return box.content.querySelector('iframe').getAttribute('src'); }})"
+            const code = embedCode(sinew.app, sinew.app.timeline, '{kind}');
+            return code.split('\"')[1].replaceAll('&#38;', '&'); }})"
         ));
         code.as_str().unwrap_or_default().split_once('?').map(|(_, tail)| format!("?{tail}")).unwrap_or_default()
     };

@@ -45,3 +45,119 @@ fn a_bad_file_is_refused_in_words_and_nothing_is_lost() {
     assert_eq!(after["source"], before["source"], "what was open stays open");
     assert_eq!(after["parts"], before["parts"], "what was painted stays painted");
 }
+
+/// A closed box of 3 × 3 × 3 squares a side that bends, with a hole of one square, a face that is there twice, a face
+/// without area, a face that shows its back, and a small piece beside it that stands still. In two poses.
+fn broken_boxes() -> [String; 2] {
+    let at = |i: usize, j: usize, k: usize| (i as f64, j as f64, k as f64);
+    let mut corners: Vec<(f64, f64, f64)> = Vec::new();
+    let mut number = |p: (f64, f64, f64)| {
+        let found = corners.iter().position(|&q| q == p);
+        found.unwrap_or_else(|| {
+            corners.push(p);
+            corners.len() - 1
+        })
+    };
+    let mut faces: Vec<[usize; 3]> = Vec::new();
+    for (i, j) in (0..3).flat_map(|i| (0..3).map(move |j| (i, j))) {
+        // Each side of the box, its corners counter-clockwise from outside.
+        let sides: [[(f64, f64, f64); 4]; 6] = [
+            [at(i, j, 3), at(i + 1, j, 3), at(i + 1, j + 1, 3), at(i, j + 1, 3)],
+            [at(i, j, 0), at(i, j + 1, 0), at(i + 1, j + 1, 0), at(i + 1, j, 0)],
+            [at(3, i, j), at(3, i + 1, j), at(3, i + 1, j + 1), at(3, i, j + 1)],
+            [at(0, i, j), at(0, i, j + 1), at(0, i + 1, j + 1), at(0, i + 1, j)],
+            [at(i, 3, j), at(i, 3, j + 1), at(i + 1, 3, j + 1), at(i + 1, 3, j)],
+            [at(i, 0, j), at(i + 1, 0, j), at(i + 1, 0, j + 1), at(i, 0, j + 1)],
+        ];
+        for side in sides {
+            let [a, b, c, d] = side.map(&mut number);
+            faces.extend([[a, b, c], [a, c, d]]);
+        }
+    }
+    // The square in the middle of the first side.
+    faces.drain(48..50);
+    let [a, b, c] = faces[20];
+    faces[20] = [b, a, c];
+    faces.extend([faces[40], [faces[50][0], faces[50][0], faces[50][1]]]);
+    let first = corners.len();
+    corners.extend([(5.0, 0.0, 0.0), (6.0, 0.0, 0.0), (5.0, 1.0, 0.0), (5.0, 0.0, 1.0)]);
+    faces.extend([[0, 2, 1], [0, 1, 3], [1, 2, 3], [2, 0, 3]].map(|f| f.map(|v| v + first)));
+    let written = |lean: f64| {
+        let vertex = |(v, &(x, y, z)): (usize, &(f64, f64, f64))| {
+            let lean = if v < first { lean } else { 0.0 };
+            format!("v {} {y} {z}\n", x + lean * y * y)
+        };
+        let vertices: String = corners.iter().enumerate().map(vertex).collect();
+        let faces: String = faces.iter().map(|[a, b, c]| format!("f {} {} {}\n", a + 1, b + 1, c + 1)).collect();
+        vertices + &faces
+    };
+    [written(0.0), written(0.1)]
+}
+
+#[test]
+#[ignore = "drives the built page in Chromium: run by `cargo xtask test`"]
+fn what_is_wrong_with_a_mesh_is_counted_and_shown() {
+    let mut page = Page::open(Backend::WebGpu, Screen::Small, "");
+    page.wait_until("sinew.ready && !sinew.state().busy", 20.0);
+    let [rest, bent] = broken_boxes();
+    page.drop_files(&[("box1.obj", rest.as_bytes()), ("box2.obj", bent.as_bytes())]);
+    page.wait_until("sinew.state().source.name.startsWith('box') && sinew.state().parts", 15.0);
+    page.evaluate("(sinew.app.setStep('source'), sinew.app.setPanel(true))");
+    page.wait_until(SETTLED, 15.0);
+    let listed = page.evaluate("[...document.querySelectorAll('#panel .doctor-item')].map((e) => e.innerText.trim())");
+    let listed = listed.to_string();
+    for what in [
+        "1 face shows its back",
+        "1 face is there twice",
+        "1 face has no area",
+        "1 open border",
+        "2 pieces",
+        "1 of 2 pieces stand still",
+    ] {
+        assert!(listed.contains(what), "no “{what}” in {listed}");
+    }
+    let marked = "[...(sinew.app.stage.kept.marks.get(0) ?? [])]";
+    let camera = "[...sinew.app.stage.camera]";
+    assert_eq!(page.evaluate(marked), serde_json::json!([]));
+    let before = (page.evaluate(camera), page.picture_of("canvas", "before-the-doctor"));
+    page.click("#doctor-source-flipped-faces");
+    page.wait_until(SETTLED, 15.0);
+    assert_eq!(page.evaluate(marked), serde_json::json!([20]));
+    assert_eq!(page.state()["time"], -1, "it is shown in the reference");
+    assert_ne!(page.evaluate(camera), before.0, "the camera goes there");
+    page.rest(0.3);
+    let shown = page.picture_of("canvas", "the-doctor");
+    assert!(shown.difference(&before.1, 12) > 0.05, "nothing is to be seen of it");
+    let words = "document.querySelector('#doctor-source-flipped-faces-words').innerText";
+    assert!(page.evaluate(words).as_str().is_some_and(|words| words.contains("direction")));
+    // Another one takes its place; the same one again takes it away.
+    page.click("#doctor-source-holes");
+    assert_eq!(page.evaluate(&format!("{marked}.length")), 4);
+    page.click("#doctor-source-holes");
+    assert_eq!(page.evaluate(marked), serde_json::json!([]));
+    assert_eq!(page.evaluate("document.querySelectorAll('#panel [aria-expanded=true]').length"), 0);
+    page.wait_until(SETTLED, 15.0);
+    assert_eq!(page.state()["error"], serde_json::Value::Null);
+}
+
+#[test]
+#[ignore = "drives the built page in Chromium: run by `cargo xtask test`"]
+fn a_broken_engine_costs_one_step() {
+    let mut page = Page::open(Backend::WebGl2, Screen::Small, "");
+    page.wait_until("sinew.ready && sinew.state().parts > 1 && !sinew.state().busy", 20.0);
+    let before = page.state();
+    // More than a wasm module can have at once: a trap, as when memory is full.
+    page.evaluate(
+        "void sinew.app.work.run('points', 'too much', () =>
+            sinew.app.engine.call('fit', { points: { length: 2 ** 29 }, parameters: {} }))",
+    );
+    page.wait_until("sinew.state().error", 10.0);
+    let error = page.state()["error"].to_string();
+    assert!(error.contains("started afresh") && error.contains("Nothing that was open is lost"), "{error}");
+    page.expect_problem("The worker broke");
+    page.evaluate("sinew.app.dismiss()");
+    page.evaluate("void sinew.app.setParts(3)");
+    page.wait_until("sinew.state().parts === 3 && !sinew.state().busy", 20.0);
+    let after = page.state();
+    assert_eq!((&after["source"], &after["error"]), (&before["source"], &serde_json::Value::Null));
+}

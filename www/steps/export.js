@@ -76,8 +76,10 @@ async function saveForm(app, form) {
 }
 
 async function saveVideo(app) {
+  app.recording = new AbortController();
   const made = await app.work.run('video', 'recording the motion', (progress) =>
-    recordLoop(app.stage, app.timeline, (done) => progress({ stage: 'recording the motion', done })));
+    recordLoop(app.stage, app.timeline, (done) => progress({ stage: 'recording the motion', done }), app.recording.signal));
+  app.recording = null;
   if (made) saveBlob(made.blob, `${fileName(app)}.${made.extension}`);
 }
 

@@ -19,7 +19,7 @@ export const sourceStep = {
   build,
 };
 
-export const ACCEPT = '.glb,.gltf,.bin,.obj,.off,.ply,model/gltf-binary,model/gltf+json';
+export const ACCEPT = '.glb,.gltf,.bin,.obj,.off,.ply,.stl,.zip,model/gltf-binary,model/gltf+json,application/zip';
 const DETAIL = [3_000, 12_000, 50_000, 200_000];
 const RATES = [6, 12, 24, 30, 60];
 const REFERENCES = [['bind', 'bind pose'], ['nodes', 'as placed in the file'], ['first-frame', 'first pose']];
@@ -42,7 +42,7 @@ function build(app) {
         ['Diagonal', number(sequence.diagonal), 'Of the bounding box of the reference pose, in the units of the file'],
       ]),
       ...warnings(app, untold(sequence.warnings)),
-      source.kind === 'zoo' ? creatureOptions(app) : isGltf(source) && animationOptions(app));
+      source.kind === 'zoo' ? creatureOptions(app) : isGltf(app) && animationOptions(app));
     health.update();
     show(gallery, choice('Creature', app.about.creatures.map((name) => [name, title(name)]),
       source.kind === 'zoo' ? source.recipe.name : null, (name) => app.openCreature({ name })));
@@ -53,7 +53,7 @@ function build(app) {
     h('h3', {}, 'Creatures'), gallery,
     h('h3', {}, 'One moves like the other'), pairGallery(app),
     h('h3', {}, 'Your own'), fileButton(app),
-    h('p', { class: 'small faint' }, 'Or drop it anywhere: a glTF or GLB with an animation, a folder, or numbered OBJ, OFF or PLY files. It never leaves this computer.'),
+    h('p', { class: 'small faint' }, 'Or drop it anywhere: a glTF or GLB with an animation, numbered OBJ, OFF, PLY or STL files, a folder or zip of them; poses may also follow their mesh. It never leaves this computer.'),
     fold('What a source is', { load: () => lesson('source') }));
 }
 
@@ -93,6 +93,8 @@ function animationOptions(app) {
 
 /** A creature has a name, a file its own. */
 const nameOf = ({ source, sequence }) =>
-  (source.kind === 'zoo' ? title(sequence.name) : sequence.name.replace(/\.(glb|gltf|obj|off|ply)$/i, ''));
+  (source.kind === 'zoo' ? title(sequence.name) : sequence.name.replace(/\.(glb|gltf|obj|off|ply|stl|zip)$/i, ''));
 
-const isGltf = ({ files }) => files?.some(({ name }) => /\.(glb|gltf)$/i.test(name));
+/** Also in an archive: only glTF has clips. */
+const isGltf = ({ source: { files }, sequence }) =>
+  sequence.clips.length > 0 || files?.some(({ name }) => /\.(glb|gltf)$/i.test(name));

@@ -84,6 +84,6 @@ function fileButton(app) {
 
 /** A creature has a name, a file its own. */
 export const nameOf = ({ app: { doc }, sequence }) =>
-  (doc.target.source.kind === 'zoo' ? title(sequence.name) : sequence.name.replace(/\.(glb|gltf|obj|off|ply)$/i, ''));
+  (doc.target.source.kind === 'zoo' ? title(sequence.name) : sequence.name.replace(/\.(glb|gltf|obj|off|ply|stl|zip)$/i, ''));
 
 export const describeTarget = (app) => (app.doc.target ? nameOf(app.target) : plural(0, 'target'));

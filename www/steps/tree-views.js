@@ -46,7 +46,7 @@ export const merging = {
     const cost = app.result.merges[index - 1]?.cost;
     return `${plural(finestOf(app.result) - index, 'part')}${cost === undefined ? '' : `, the last merge cost ${number(cost, 2)}`}`;
   },
-  paint: (app, index) => paintParts(app, mergedOf(app.result, index)),
+  paint: (app, index) => paintParts(app, app.result.merges.length ? mergedOf(app.result, index) : app.result.unsmoothed),
   legend: ({ result }) => ({
     kind: 'words',
     text: result.merges.length ? `From ${plural(finestOf(result), 'finest part')} down to one. The parts that are shown in the end come after ${plural(Math.max(0, finestOf(result) - new Set(result.unsmoothed).size), 'merge')}.`

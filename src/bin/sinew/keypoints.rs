@@ -38,7 +38,7 @@ pub struct KeyPointsCommand {
     /// λ, the share of rigidity in the energy (paper: 0.5)
     #[arg(long)]
     lambda: Option<f64>,
-    /// Another number, another first candidate
+    /// Another number, another vertex from which the first candidate is sought
     #[arg(long)]
     seed: Option<u64>,
     /// Write points, errors, seconds and what the search saw as JSON

@@ -9,6 +9,7 @@ use serde_json::json;
 use sinew::clock;
 use sinew::import::{File, Options, open_in_order};
 use sinew::transfer::propose::Proposer;
+use sinew::warning::Warning;
 use std::path::{Path, PathBuf};
 
 /// Arguments of `sinew propose`.
@@ -68,8 +69,9 @@ impl Propose {
         if let Some(next) = proposals.next.and_then(|next| points.get(next)) {
             say(format_args!("most worth placing by hand: {next}"));
         }
-        print_warnings(&source.warnings);
-        print_warnings(&target.warnings);
+        let warnings: Vec<Warning> =
+            source.warnings.iter().chain(&target.warnings).filter(|w| w.code != "no-animation").cloned().collect();
+        print_warnings(&warnings);
         let Some(path) = &self.report else { return Ok(()) };
         let list: Vec<_> = points
             .iter()
@@ -80,7 +82,7 @@ impl Propose {
             "pairs": list,
             "next": proposals.next,
             "seconds": { "prepare": prepared - start, "propose": done - prepared },
-            "warnings": source.warnings.iter().chain(&target.warnings).collect::<Vec<_>>(),
+            "warnings": warnings,
         });
         output::write_report(path, &report)
     }

@@ -12,6 +12,7 @@ use glam::DVec3;
 use pairs::pairs;
 use serde_json::{Map, Value, json};
 use sinew::clock;
+use sinew::export::skin::{Influences, Skin, SkinPose, light};
 use sinew::import::{File, Imported, Options, natural_order, open_in_order};
 use sinew::mesh::ball::unit_ball;
 use sinew::observer::Silent;
@@ -46,6 +47,10 @@ pub struct Transfer {
     /// Write the moving target
     #[arg(long, value_name = "FILE.glb")]
     out: Option<PathBuf>,
+    /// With --out: a skin whose joints are the handles, small whatever the number of poses, instead of exact shapes; the
+    /// report says what error that adds
+    #[arg(long, requires = "out")]
+    light: bool,
     /// Write one OBJ a pose, with the target's own vertices and polygons
     #[arg(long, value_name = "DIR")]
     out_poses: Option<PathBuf>,
@@ -107,14 +112,30 @@ impl Transfer {
         if let Some(folder) = &self.out_poses {
             write_poses(folder, &moved)?;
         }
+        let mut added = None;
         if let Some(path) = &self.out {
-            output::write_glb(path, &moved, &vec![0; moved.faces().len()], &[])?;
+            if self.light {
+                added = Some(write_light(path, &source.sequence, &target.sequence, &result)?);
+            } else {
+                output::write_glb(path, &moved, &vec![0; moved.faces().len()], &[])?;
+            }
         }
         if let Some(path) = &self.report {
-            let report = report(&source, &target, &pairs, &parameters, &result, errors.as_ref(), [reading, blending]);
+            let mut report =
+                report(&source, &target, &pairs, &parameters, &result, errors.as_ref(), [reading, blending]);
+            if let (Some([rms, largest]), Some(report)) = (added, report.as_object_mut()) {
+                report.insert("light".into(), json!({ "rms": rms, "largest": largest }));
+            }
             output::write_report(path, &report)?;
         }
         print(&source, &target, &pairs, &result, errors.as_ref());
+        if let Some([rms, largest]) = added {
+            say(format_args!(
+                "  the skin in the file adds {:.2} % of the diagonal, at most {:.2} %",
+                100.0 * rms,
+                100.0 * largest
+            ));
+        }
         Ok(())
     }
 
@@ -145,7 +166,10 @@ fn mesh(paths: &[PathBuf]) -> Result<Imported, Refusal> {
         }
     };
     let files = paths.iter().map(read).collect::<Result<Vec<_>, _>>()?;
-    Ok(open_in_order(&files, &Options { weld: false, ..Options::default() })?)
+    let mut mesh = open_in_order(&files, &Options { weld: false, ..Options::default() })?;
+    // A target stands still, as it should.
+    mesh.warnings.retain(|warning| warning.code != "no-animation");
+    Ok(mesh)
 }
 
 /// The target with the poses of the source.
@@ -227,6 +251,24 @@ fn distances(found: &[DVec3], truth: &[DVec3], radius: f64) -> Vec<f64> {
     let off: Vec<DVec3> = found.iter().zip(truth).map(|(a, b)| (*a - *b) / radius).collect();
     let mean = off.iter().sum::<DVec3>() / off.len().max(1) as f64;
     off.into_iter().map(|d| (d - mean).length()).collect()
+}
+
+/// The moving target as a skin over its handles; the root mean square and the largest error that this form adds, over the
+/// diagonal.
+fn write_light(path: &Path, source: &Sequence, target: &Sequence, result: &Result_) -> Result<[f64; 2], Refusal> {
+    let poses = source.poses().iter().zip(&result.skin.maps);
+    let poses: Vec<SkinPose> = poses.map(|(pose, maps)| SkinPose { name: &pose.name, time: pose.time, maps }).collect();
+    let skin = Skin {
+        name: target.name(),
+        faces: target.faces(),
+        reference: target.reference(),
+        weights: &result.skin.dense(),
+        handles: result.skin.handles.len(),
+        poses: &poses,
+    };
+    let light = light(&skin, Influences::Four)?;
+    output::write(path, &light.bytes)?;
+    Ok([light.rms, light.largest])
 }
 
 /// One OBJ a pose. Where faces were cut from polygons, the polygons are put together again.

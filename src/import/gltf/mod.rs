@@ -11,7 +11,7 @@ mod document;
 mod draco;
 mod extensions;
 mod instancing;
-mod meshopt;
+pub mod meshopt;
 mod model;
 mod nodes;
 mod sample;

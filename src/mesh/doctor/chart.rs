@@ -77,8 +77,8 @@ impl<'a> Chart<'a> {
         let faces: Vec<[u32; 3]> = given.iter().map(|face| face.map(|v| stands[v as usize])).collect();
         let corners = |&face: &[u32; 3]| face::corners(reference, face).map(|p| p * scale);
         let normals = given.iter().map(|face| face::double_area_normal(corners(face))).collect();
-        let repeated = repeated(&faces);
-        let sides = sides(&faces, &repeated);
+        let repeated = repeated(&faces, reference.len());
+        let sides = sides(&faces, &repeated, reference.len());
         let orientation = Orientation::new(faces.len(), &sides);
         Self { given, reference, poses, stands, faces, used, normals, scale, repeated, sides, orientation }
     }
@@ -129,7 +129,7 @@ fn scale(reference: &[DVec3], used: &[bool]) -> f64 {
 }
 
 /// #F: whether an earlier face has the same three points.
-fn repeated(faces: &[[u32; 3]]) -> Vec<bool> {
+fn repeated(faces: &[[u32; 3]], points: usize) -> Vec<bool> {
     let sorted = |(f, face): (usize, &[u32; 3])| {
         let mut points = *face;
         points.sort_unstable();
@@ -137,7 +137,7 @@ fn repeated(faces: &[[u32; 3]]) -> Vec<bool> {
     };
     let mut order: Vec<([u32; 3], u32)> =
         faces.iter().enumerate().filter(|(_, face)| is_whole(**face)).map(sorted).collect();
-    order.sort_unstable();
+    sort_by_point(&mut order, points, |entry| entry.0[0]);
     let mut repeated = vec![false; faces.len()];
     for same in order.chunk_by(|a, b| a.0 == b.0) {
         same[1..].iter().for_each(|&(_, f)| repeated[f as usize] = true);
@@ -145,7 +145,7 @@ fn repeated(faces: &[[u32; 3]]) -> Vec<bool> {
     repeated
 }
 
-fn sides(faces: &[[u32; 3]], repeated: &[bool]) -> Vec<Side> {
+fn sides(faces: &[[u32; 3]], repeated: &[bool], points: usize) -> Vec<Side> {
     let mut sides = Vec::with_capacity(3 * faces.len());
     for (f, &[a, b, c]) in faces.iter().enumerate().filter(|&(f, face)| is_whole(*face) && !repeated[f]) {
         for (v, w) in [(a, b), (b, c), (c, a)] {
@@ -153,6 +153,25 @@ fn sides(faces: &[[u32; 3]], repeated: &[bool]) -> Vec<Side> {
             sides.push(Side { edge, tag: (f as u32) << 1 | u32::from(v < w) });
         }
     }
-    sides.sort_unstable();
+    sort_by_point(&mut sides, points, |side| side.points()[0]);
     sides
+}
+
+/// Sorts what begins with a point below `points`: by the point with counting, then the few that have it.
+fn sort_by_point<T: Copy + Ord>(items: &mut Vec<T>, points: usize, point: impl Fn(&T) -> u32) {
+    let Some(&any) = items.first() else { return };
+    let mut start = vec![0_u32; points + 1];
+    items.iter().for_each(|item| start[point(item) as usize + 1] += 1);
+    for p in 0..points {
+        start[p + 1] += start[p];
+    }
+    let mut next = start.clone();
+    let mut sorted = vec![any; items.len()];
+    for item in items.iter() {
+        let slot = &mut next[point(item) as usize];
+        sorted[*slot as usize] = *item;
+        *slot += 1;
+    }
+    start.windows(2).for_each(|range| sorted[range[0] as usize..range[1] as usize].sort_unstable());
+    *items = sorted;
 }

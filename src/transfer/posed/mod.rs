@@ -115,11 +115,12 @@ fn rotations(
         places[part].0 += super::gradients::operator::outer(weight * q, p);
         places[part].1 += weight * p.length() * q.length();
     });
-    let rotation = |((normals, (places, size)), (_, _, total)): ((DMat3, (DMat3, f64)), (DVec3, DVec3, f64))| {
+    let rotation = |part: usize| {
+        let ((places, size), (_, _, total)) = (places[part], middles[part]);
         let scale = if size > 0.0 { POSITIONS * total / size } else { 0.0 };
-        best_rotation(normals + places * scale)
+        best_rotation(normals[part] + places * scale)
     };
-    normals.into_iter().zip(places).zip(middles).map(rotation).collect()
+    (0..count).map(rotation).collect()
 }
 
 /// Moves the turned target so that what hardly turned stays where it was.

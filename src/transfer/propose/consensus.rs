@@ -173,6 +173,24 @@ impl<'a> Consensus<'a> {
         }
     }
 
+    /// The places of the target's samples.
+    pub fn target_places(&self) -> &[DVec3] {
+        &self.target.places
+    }
+
+    /// Up to `most` points that are trusted, and where they are on the target; the given ones first.
+    pub fn guides(&self, most: usize) -> Vec<(DVec3, DVec3)> {
+        let mut order: Vec<usize> = (0..self.points.len()).collect();
+        order.sort_by_key(|&i| self.points[i].given.is_none());
+        let trusted = order.into_iter().filter(|&i| self.trust[i] > 0.5);
+        trusted.filter_map(|i| Some((self.points[i].place, self.place(i)?))).take(most).collect()
+    }
+
+    /// The places of the given points, and the target's samples at them.
+    pub fn given(&self) -> impl Iterator<Item = (DVec3, u32)> + '_ {
+        self.points.iter().filter_map(|point| Some((point.place, point.given.as_ref()?.sample)))
+    }
+
     /// What a point hears; `None` if no other point has a place.
     pub fn voice(&self, i: usize, rules: &Rules) -> Option<Voice> {
         let n = self.points.len();
@@ -243,31 +261,35 @@ impl<'a> Consensus<'a> {
         }
     }
 
-    /// The target's own vertex near a point's sample that costs least, and the cost.
-    pub fn vertex(&self, i: usize, rules: &Rules) -> Option<(u32, f64)> {
-        let own = self.at[i]?;
-        let target = self.target;
-        let fallback = Some((target.samples[own as usize], self.costs[i]));
-        let Some(voice) = self.voice(i, rules) else { return fallback };
-        let n = self.points.len();
+    /// What a vertex of the target would cost a point.
+    pub fn price(&self, i: usize, rules: &Rules) -> Option<impl Fn(u32) -> f64 + '_> {
+        let voice = self.voice(i, rules)?;
+        let (n, rules) = (self.points.len(), *rules);
         let row = &self.distances[i * n..(i + 1) * n];
         let columns: Vec<(f64, f64, &[f32])> = voice
             .heard
             .iter()
             .filter_map(|&(j, w)| Some((w, voice.scale * f64::from(row[j as usize]), self.column(j as usize)?)))
             .collect();
-        let cost = |v: u32| {
+        Some(move |v: u32| {
+            let target = self.target;
             let reading = target.readings[v as usize];
             let far = |column: &[f32]| -> f64 { reading.iter().map(|&(s, w)| f64::from(w * column[s as usize])).sum() };
             let distances: f64 = columns.iter().map(|(w, wanted, column)| w * (far(column) - wanted).powi(2)).sum();
             let r: f64 = reading.iter().map(|&(s, w)| f64::from(w * target.remote[s as usize])).sum();
             distances
                 + REMOTE * (r - f64::from(self.points[i].remote)).powi(2)
-                + away(&voice, target.points[v as usize], target.vertex_normals[v as usize], rules)
-        };
-        let cells = std::iter::once(own).chain(target.graph.links(own).iter().map(|l| l.0));
-        let vertices = cells.flat_map(|cell| &target.members[cell as usize]);
-        let best = vertices.map(|&v| (v, cost(v))).min_by(|a, b| a.1.total_cmp(&b.1).then(a.0.cmp(&b.0)));
+                + away(&voice, target.points[v as usize], target.vertex_normals[v as usize], &rules)
+        })
+    }
+
+    /// The target's own vertex near a point's sample that costs least, and the cost.
+    pub fn vertex(&self, i: usize, rules: &Rules) -> Option<(u32, f64)> {
+        let own = self.at[i]?;
+        let target = self.target;
+        let fallback = Some((target.samples[own as usize], self.costs[i]));
+        let Some(cost) = self.price(i, rules) else { return fallback };
+        let best = target.around(own).map(|v| (v, cost(v))).min_by(|a, b| a.1.total_cmp(&b.1).then(a.0.cmp(&b.0)));
         best.filter(|b| b.1.is_finite()).or(fallback)
     }
 

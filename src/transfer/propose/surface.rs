@@ -40,6 +40,8 @@ pub struct Surface {
     distances: Vec<f32>,
     /// #samples mean distances from the first samples: large at tips.
     pub remote: Vec<f32>,
+    /// Triangles between samples whose cells meet.
+    pub coarse: Vec<[u32; 3]>,
     /// The coarse graph.
     pub graph: Graph,
     /// #samples lists of the vertices in each cell.
@@ -70,6 +72,8 @@ impl Surface {
         let distances = all_pairs(&graph);
         let (vertex_normals, normals) = normals(&welded, &points, &stands, &cell, samples.len());
         let readings = readings(&points, &cell, &coarse, &places);
+        let proper = |[a, b, c]: &[u32; 3]| a != b && b != c && c != a;
+        let coarse = coarse.into_iter().filter(proper).collect();
         let mut members = vec![Vec::new(); samples.len()];
         for &v in &used {
             members[cell[v as usize] as usize].push(v);
@@ -84,6 +88,7 @@ impl Surface {
             normals,
             distances,
             remote: Vec::new(),
+            coarse,
             graph,
             members,
             sides,
@@ -117,6 +122,23 @@ impl Surface {
     pub fn row(&self, sample: u32) -> &[f32] {
         let n = self.len();
         &self.distances[sample as usize * n..(sample as usize + 1) * n]
+    }
+
+    /// The vertices in the cell of a sample and in those beside it.
+    pub fn around(&self, sample: u32) -> impl Iterator<Item = u32> + '_ {
+        let cells = std::iter::once(sample).chain(self.graph.links(sample).iter().map(|l| l.0));
+        cells.flat_map(|cell| self.members[cell as usize].iter().copied())
+    }
+
+    /// The vertex nearest to the place `share` of the way from one vertex to another, that faces as one of them does.
+    pub fn between(&self, from: u32, to: u32, share: f64) -> u32 {
+        let [a, b] = [from, to].map(|v| self.points[v as usize]);
+        let place = a.lerp(b, share);
+        let normals = [from, to].map(|v| self.vertex_normals[v as usize]);
+        let near = [from, to].into_iter().flat_map(|v| self.around(self.cell[v as usize]));
+        let alike = |v: &u32| normals.iter().any(|n| n.dot(self.vertex_normals[*v as usize]) > 0.0);
+        let far = |v: u32| self.points[v as usize].distance_squared(place);
+        near.filter(alike).min_by(|&u, &v| far(u).total_cmp(&far(v)).then(u.cmp(&v))).unwrap_or(to)
     }
 
     /// Distances of all samples from a place between samples.

@@ -22,6 +22,9 @@ pub struct Rig {
     pub maps: Vec<Vec<DAffine3>>,
     /// Mean distance of the skinned vertices from the true ones, over vertices (by area) and poses, in radii.
     pub error: f64,
+    /// The poses that tell most, in ascending order.
+    pub telling: Vec<usize>,
+    motions: motions::Motions,
 }
 
 impl Rig {
@@ -36,7 +39,12 @@ impl Rig {
         let maps: Vec<Vec<DAffine3>> = poses.iter().map(|pose| motions.fit(surface, pose)).collect();
         let error = poses.iter().zip(&maps).map(|(pose, maps)| deviation(surface, &rows, pose, maps)).sum::<f64>()
             / poses.len().max(1) as f64;
-        Self { bones: found.count, rows, maps, error }
+        Self { bones: found.count, rows, maps, error, telling: chosen, motions }
+    }
+
+    /// The motion of each bone in another pose, #N positions in the unit ball of the surface that the rig was made of.
+    pub fn follow(&self, surface: &Surface, pose: &[DVec3]) -> Vec<DAffine3> {
+        self.motions.fit(surface, pose)
     }
 }
 

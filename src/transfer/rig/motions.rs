@@ -11,7 +11,7 @@ const OWN: i32 = 4;
 const HOLD: f64 = 1e-3;
 
 /// What the fit of a pose needs of the weights.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Default)]
 pub struct Motions {
     rows: Vec<Vec<(u32, f64)>>,
     bones: usize,

@@ -104,27 +104,27 @@ fn simplex(gram: &[[f64; CANDIDATES]], pull: &[f64]) -> Vec<f64> {
 
 /// Rows half their own, half their neighbours' mean; at most `most` entries each.
 pub fn averaged(surface: &Surface, rows: &[Vec<(u32, f64)>], most: usize) -> Vec<Vec<(u32, f64)>> {
-    let mut sum: Vec<(u32, f64)> = Vec::new();
-    (0..rows.len())
-        .map(|v| {
-            let beside = surface.neighbours(v);
-            sum.clear();
-            let mut add = |row: &[(u32, f64)], factor: f64| {
-                for &(bone, share) in row {
-                    match sum.iter_mut().find(|s| s.0 == bone) {
-                        Some(s) => s.1 += factor * share,
-                        None => sum.push((bone, factor * share)),
-                    }
-                }
-            };
-            add(&rows[v], if beside.is_empty() { 1.0 } else { 0.5 });
-            beside.iter().for_each(|&u| add(&rows[u as usize], 0.5 / beside.len() as f64));
-            let mut row: Vec<(u32, f64)> = sum.iter().copied().filter(|s| s.1 > LEAST).collect();
-            row.sort_by(|a, b| b.1.total_cmp(&a.1).then(a.0.cmp(&b.0)));
-            row.truncate(most);
-            normalised(row)
-        })
-        .collect()
+    (0..rows.len()).map(|v| averaged_row(surface, rows, v, most)).collect()
+}
+
+/// One of these rows.
+pub fn averaged_row(surface: &Surface, rows: &[Vec<(u32, f64)>], v: usize, most: usize) -> Vec<(u32, f64)> {
+    let beside = surface.neighbours(v);
+    let mut sum: Vec<(u32, f64)> = Vec::with_capacity(2 * most);
+    let mut add = |row: &[(u32, f64)], factor: f64| {
+        for &(bone, share) in row {
+            match sum.iter_mut().find(|s| s.0 == bone) {
+                Some(s) => s.1 += factor * share,
+                None => sum.push((bone, factor * share)),
+            }
+        }
+    };
+    add(&rows[v], if beside.is_empty() { 1.0 } else { 0.5 });
+    beside.iter().for_each(|&u| add(&rows[u as usize], 0.5 / beside.len() as f64));
+    sum.retain(|s| s.1 > LEAST);
+    sum.sort_by(|a, b| b.1.total_cmp(&a.1).then(a.0.cmp(&b.0)));
+    sum.truncate(most);
+    normalised(sum)
 }
 
 /// Shares that sum to 1.

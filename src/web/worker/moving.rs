@@ -6,6 +6,7 @@ use super::values::{Reply, parsed, plain, put, sentence};
 use super::watcher;
 use crate::export::animation;
 use crate::export::skin::{self, Influences, SkinPose};
+use crate::memory::Step;
 use crate::transfer::{Pair, Parameters, Prepared};
 use js_sys::{Float32Array, Function, Object, Uint8Array, Uint16Array};
 use wasm_bindgen::prelude::*;
@@ -27,6 +28,7 @@ impl Engine {
         let mut prepared = match self.prepared.take() {
             Some((made_with, prepared)) if made_with == parameters => prepared,
             _ => {
+                self.room_for(Step::Transfer(self.open_target()?.sizes()), self.open_sequence()?)?;
                 let made = Prepared::new(self.open_sequence()?, self.open_target()?, &parameters, &mut observer)
                     .map_err(sentence)?;
                 preparing.extend_from_slice(made.seconds());

@@ -2,8 +2,9 @@
 
 use super::Engine;
 use super::sequences::{describe, kept_sequence, rounded};
-use super::values::{Reply, parsed, plain, put, read_file, sentence, single};
+use super::values::{Reply, parsed, plain, put, read_files, sentence, single};
 use crate::import::{self, Options};
+use crate::memory::Step;
 use crate::sequence::Sequence;
 use crate::transfer::propose::Proposer;
 use crate::weights::{Biharmonic, Parameters};
@@ -15,9 +16,8 @@ use wasm_bindgen::prelude::*;
 impl Engine {
     /// Opens files as the target; as [`Engine::open`].
     pub fn target(&mut self, files: &Array, options: JsValue) -> Reply {
-        let files = files.iter().map(|file| read_file(&file)).collect::<Result<Vec<_>, _>>()?;
         let options: Options = parsed(options)?;
-        let imported = import::open(&files, &options).map_err(sentence)?;
+        let imported = import::open(&read_files(files)?, &options).map_err(sentence)?;
         let sequence = rounded(&imported.sequence)?;
         let reply = describe(&sequence, &imported.clips, imported.clip, &imported.warnings)?;
         self.replace_target(Some(sequence));
@@ -71,7 +71,10 @@ impl Engine {
         let target = self.open_target()?;
         let field = match retained {
             Some(field) => field,
-            None => Biharmonic::new(target.faces(), target.reference()).map_err(sentence)?,
+            None => {
+                self.room_for(Step::Weights(handles.len()), target)?;
+                Biharmonic::new(target.faces(), target.reference()).map_err(sentence)?
+            }
         };
         let weights = field.weights(handles, &Parameters::default()).map_err(sentence)?;
         self.target_field = Some(field);

@@ -4,6 +4,7 @@ use super::Engine;
 use super::values::{Reply, parsed, plain, put, sentence, single};
 use super::watcher;
 use crate::keypoints::{self, KeyPoints, Parameters, Rounds};
+use crate::memory::Step;
 use crate::skinning::Fit;
 use crate::weights::Weights;
 use glam::DAffine3;
@@ -15,6 +16,7 @@ impl Engine {
     /// Finds the key points of what is open, with [`Parameters`] in their serde form.
     pub fn keypoints(&self, parameters: JsValue, progress: &Function) -> Reply {
         let parameters: Parameters = parsed(parameters)?;
+        self.room_for(Step::KeyPoints(parameters.points.unwrap_or(parameters.max)), self.open_sequence()?)?;
         let found = keypoints::select(self.open_sequence()?, &parameters, &mut watcher(progress)).map_err(sentence)?;
         let reply = describe(&found.weights, &found.groups, &found.fits, &found.rounds)?;
         put(&reply, "key_points", &Uint32Array::from(found.key_points.as_slice()))?;
@@ -30,6 +32,7 @@ impl Engine {
     /// What follows from points given by hand: weights, groups, the error.
     pub fn fit(&self, points: &[u32], parameters: JsValue) -> Reply {
         let parameters: Parameters = parsed(parameters)?;
+        self.room_for(Step::KeyPoints(points.len()), self.open_sequence()?)?;
         let fitted = keypoints::fit_all(self.open_sequence()?, points, &parameters).map_err(sentence)?;
         let reply = describe(&fitted.weights, &fitted.groups, &fitted.fits, &fitted.rounds)?;
         put(&reply, "error", &fitted.error.into())?;

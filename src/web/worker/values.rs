@@ -2,7 +2,7 @@
 
 use crate::import::File;
 use glam::DVec3;
-use js_sys::{Float32Array, Reflect, Uint8Array};
+use js_sys::{Array, Float32Array, Reflect, Uint8Array};
 use serde::Serialize;
 use serde::de::DeserializeOwned;
 use std::fmt::Display;
@@ -11,7 +11,12 @@ use wasm_bindgen::prelude::*;
 /// What a message returns: an object, or a sentence.
 pub type Reply = Result<JsValue, JsValue>;
 
-pub fn read_file(file: &JsValue) -> Result<File, JsValue> {
+/// `[{name, bytes: Uint8Array}]`.
+pub fn read_files(files: &Array) -> Result<Vec<File>, JsValue> {
+    files.iter().map(|file| read_file(&file)).collect()
+}
+
+fn read_file(file: &JsValue) -> Result<File, JsValue> {
     let name = field(file, "name")?.as_string().ok_or_else(|| sentence("A file has no name."))?;
     Ok(File { name, bytes: Uint8Array::from(field(file, "bytes")?).to_vec() })
 }

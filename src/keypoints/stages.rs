@@ -1,0 +1,158 @@
+//! The search from stage to stage: points are added, exchanged, replaced and moved on one coarse mesh, and moved once
+//! more and put in order on a finer one.
+//!
+//! Adding the best and then replacing one at a time (§3.5) ends where the first points happen to lead. More points than
+//! wanted and then fewer again (P. Pudil, J. Novovičová, J. Kittler. *Floating search methods in feature selection*.
+//! Pattern Recognition Letters 15(11), 1994), and steps to vertices that are not among the candidates, make up for it.
+
+use super::coarse::Coarse;
+use super::full::Full;
+use super::poses;
+use super::result::{KeyPointError, Replacement, Step};
+use super::search::{Search, WORTH};
+use super::select::{Choice, is_enough, measured};
+use super::surface::Surface;
+use super::watch::Watch;
+use super::{Parameters, Stop};
+
+/// Vertices of the coarse mesh on which sets are sought, and of the one on which they are settled.
+const COARSE: [usize; 2] = [600, 900];
+
+/// Points that are added and taken away again, and how often at most.
+const MORE: usize = 3;
+const EXCHANGES: usize = 2;
+
+/// How often every point may be replaced or moved; three times are many.
+const ROUNDS: usize = 20;
+
+/// Points after which progress has come most of the way.
+const MANY: f64 = 12.0;
+
+/// Points replaced so far, by their vertices in the sequence.
+struct Trail<'a> {
+    surface: &'a Surface,
+    replacements: Vec<Replacement>,
+}
+
+impl Trail<'_> {
+    /// The vertex of the sequence that a vertex of a coarse mesh is.
+    fn name(&self, coarse: &Coarse, vertex: u32) -> u32 {
+        self.surface.origin[coarse.surface.origin[vertex as usize] as usize]
+    }
+
+    fn add(&mut self, coarse: &Coarse, from: u32, to: u32, error: f64) {
+        let (from, to) = (self.name(coarse, from), self.name(coarse, to));
+        self.replacements.push(Replacement { from, to, error });
+    }
+}
+
+/// Chooses among candidates, `found` on the surface, and vertices near them.
+pub fn run(found: &[u32], full: &Full, parameters: &Parameters, watch: &mut Watch) -> Result<Choice, KeyPointError> {
+    let surface = full.surface;
+    let gammas = [parameters.gamma_rotation, parameters.gamma_shear];
+    let poses = poses::spread(surface);
+    let coarse = Coarse::new(surface, found, &poses, COARSE[0], gammas);
+    let mut steps = Vec::new();
+    let mut trail = Trail { surface, replacements: Vec::new() };
+    watch.begin("adding points", 0.1)?;
+    let mut search = Search::new(&coarse, parameters.fit());
+    let mut curve = vec![search.set.error];
+    let mut more = !is_enough(parameters, &curve);
+    loop {
+        watch.begin("adding points", 0.1)?;
+        while more {
+            let done = 0.1 + 0.25 * (1.0 - (-(curve.len() as f64) / MANY).exp());
+            let Some(mut tried) = search.add(&mut || watch.go_on(done)) else {
+                watch.tell(done)?;
+                break;
+            };
+            tried.iter_mut().for_each(|t| t.vertex = surface.origin[t.vertex as usize]);
+            let chosen = search.set.members.last().map_or(0, |&m| trail.name(&coarse, m));
+            steps.push(Step { tried, chosen, error: search.set.error });
+            curve.push(search.set.error);
+            more = !is_enough(parameters, &curve);
+        }
+        watch.begin("exchanging points", 0.35)?;
+        for _ in 0..EXCHANGES {
+            if !exchange(&mut search, &coarse, &mut trail, watch)? {
+                break;
+            }
+        }
+        watch.begin("replacing points", 0.45)?;
+        in_turn(&mut search, Search::replace, [0.45, 0.55], &coarse, &mut trail, watch)?;
+        watch.begin("moving points", 0.55)?;
+        in_turn(&mut search, Search::shift, [0.55, 0.65], &coarse, &mut trail, watch)?;
+        let count = search.set.members.len();
+        let mut kept: Vec<u32> = search.set.members.iter().map(|&m| coarse.surface.origin[m as usize]).collect();
+        let others: Vec<u32> = found.iter().copied().filter(|v| !kept.contains(v)).collect();
+        kept.extend(others);
+        let finer = Coarse::new(surface, &kept, &poses, COARSE[1], gammas);
+        let mut last = Search::from_points(&finer, parameters.fit(), &finer.candidates[..count]);
+        in_turn(&mut last, Search::shift, [0.65, 0.75], &finer, &mut trail, watch)?;
+        watch.begin("ordering points", 0.75)?;
+        let (order, estimates) = last.order(&mut || watch.go_on(0.78)).ok_or(KeyPointError::Cancelled)?;
+        let points: Vec<u32> = order.into_iter().map(|m| trail.name(&finer, m)).collect();
+        watch.begin("error curve", 0.8)?;
+        let by_error = parameters.points.is_none() && parameters.stop == Stop::Error;
+        let end = measured(full, &points, Some(&estimates), by_error.then_some(parameters.error), watch)?;
+        // The coarse mesh may have been too hopeful.
+        let reached = end.errors.last().is_none_or(|&error| error <= parameters.error);
+        let most = parameters.max.min(coarse.candidates.len());
+        if !by_error || reached || points.len() >= most {
+            return Ok(Choice { end, steps, replacements: trail.replacements });
+        }
+        more = true;
+    }
+}
+
+/// Adds some points and takes the same number away, whichever can be spared; whether that was for the better.
+fn exchange(search: &mut Search, coarse: &Coarse, trail: &mut Trail, watch: &mut Watch) -> Result<bool, KeyPointError> {
+    let before = search.state();
+    let old = search.set.members.clone();
+    let error = search.set.error;
+    for _ in 0..MORE {
+        if search.add(&mut || watch.go_on(0.4)).is_none() {
+            watch.tell(0.4)?;
+            break;
+        }
+    }
+    while search.set.members.len() > old.len() {
+        search.remove(&mut || watch.go_on(0.43)).ok_or(KeyPointError::Cancelled)?;
+    }
+    if search.set.error >= error * (1.0 - WORTH) {
+        search.restore(before);
+        return Ok(false);
+    }
+    let members = &search.set.members;
+    let gone = old.iter().filter(|m| !members.contains(m));
+    let come = members.iter().filter(|m| !old.contains(m));
+    gone.zip(come).for_each(|(&from, &to)| trail.add(coarse, from, to, search.set.error));
+    Ok(true)
+}
+
+/// Replaces or moves points in turn until none can be for the better, while progress goes `from` … `to`.
+fn in_turn<'a>(
+    search: &mut Search<'a>,
+    step: fn(&mut Search<'a>, usize, &mut dyn FnMut() -> bool) -> Option<bool>,
+    [from, to]: [f64; 2],
+    coarse: &Coarse,
+    trail: &mut Trail,
+    watch: &mut Watch,
+) -> Result<(), KeyPointError> {
+    let count = search.set.members.len();
+    let (mut done, mut idle, mut place) = (from, 0, 0);
+    for _ in 0..ROUNDS * count {
+        if idle >= count {
+            break;
+        }
+        done += (to - done) * 0.02;
+        let old = search.set.members[place];
+        let better = step(search, place, &mut || watch.go_on(done)).ok_or(KeyPointError::Cancelled)?;
+        if better {
+            trail.add(coarse, old, search.set.members[place], search.set.error);
+        }
+        idle = if better { 0 } else { idle + 1 };
+        place = (place + 1) % count;
+    }
+    Ok(())
+}

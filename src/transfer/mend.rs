@@ -1,0 +1,139 @@
+//! Weights where the source has nothing like the target, and where they would tear it.
+//!
+//! A tail, a hump or a hat of the target may have no twin on the source: it follows what it grows from. And wherever two
+//! neighbours follow motions that lead far apart, more than anything on the source comes apart, weights are averaged there
+//! until they do not.
+
+use super::rig::blend;
+use super::rig::weights::averaged_row;
+use super::surface::Surface;
+use glam::{DAffine3, DVec3};
+use std::cmp::Reverse;
+use std::collections::{BTreeMap, BinaryHeap};
+
+/// Edges may become longer by this factor in any case,
+const LEAST: f64 = 1.6;
+/// and this much longer than those of the source, a thousandth of which are left out.
+const MORE: f64 = 1.25;
+const LEFT_OUT: f64 = 1e-3;
+/// Rounds of averaging at most,
+const ROUNDS: usize = 24;
+/// averages in a round on surfaces of [`AVERAGED`] vertices, and the most on finer ones.
+const AVERAGES: usize = 3;
+const AVERAGED: usize = 4000;
+const MOST_AVERAGES: usize = 12;
+/// The half width of a strip over the least that it needs.
+const WIDTH: f64 = 1.0;
+/// Edges shorter than this, in radii, count as so long: slivers tell nothing.
+const SHORT: f64 = 2e-3;
+
+type Row = Vec<(u32, f64)>;
+
+/// Gives `lost` vertices the rows of the nearest others along the surface; pieces that are lost altogether stay.
+pub fn fill(surface: &Surface, rows: &mut [Row], lost: &[bool]) {
+    let mut from: Vec<u32> = (0..rows.len() as u32).collect();
+    let mut distance: Vec<f64> = lost.iter().map(|&lost| if lost { f64::INFINITY } else { 0.0 }).collect();
+    let mut heap: BinaryHeap<(Reverse<u64>, Reverse<u32>)> = BinaryHeap::new();
+    for v in (0..rows.len()).filter(|&v| !lost[v] && surface.neighbours(v).iter().any(|&u| lost[u as usize])) {
+        heap.push((Reverse(0), Reverse(v as u32)));
+    }
+    // Distances are not negative, so their bits are ordered like their values.
+    while let Some((Reverse(bits), Reverse(v))) = heap.pop() {
+        let (d, v) = (f64::from_bits(bits), v as usize);
+        if d > distance[v] {
+            continue;
+        }
+        for &u in surface.neighbours(v) {
+            let u = u as usize;
+            let further = d + surface.positions[v].distance(surface.positions[u]);
+            if further < distance[u] {
+                (distance[u], from[u]) = (further, from[v]);
+                heap.push((Reverse(further.to_bits()), Reverse(u as u32)));
+            }
+        }
+    }
+    for v in (0..rows.len()).filter(|&v| lost[v]) {
+        let row = rows[from[v] as usize].clone();
+        rows[v] = row;
+    }
+}
+
+/// By how much edges of a moving surface may become longer on another that follows it.
+pub fn allowed(surface: &Surface, poses: &[&[DVec3]]) -> f64 {
+    let mut stretches: Vec<f64> =
+        edges(surface).map(|(a, b)| longest(surface, a, b, |v, pose| poses[pose][v], poses.len())).collect();
+    if stretches.is_empty() {
+        return LEAST;
+    }
+    let place = ((1.0 - LEFT_OUT) * (stretches.len() - 1) as f64) as usize;
+    let usual = *stretches.select_nth_unstable_by(place, f64::total_cmp).1;
+    LEAST.max(MORE * usual)
+}
+
+/// Averages rows of at most `most` entries where edges would become longer by more than the factor `allowed` in a pose;
+/// `poses` are the maps of the handles.
+///
+/// What comes apart by some length needs a strip in proportion to it, where all edges become a little longer.
+pub fn close(surface: &Surface, rows: &mut [Row], poses: &[&[DAffine3]], allowed: f64, most: usize) {
+    let at = |v: usize, row: &Row| poses.iter().map(|maps| blend(row, maps, surface.positions[v])).collect::<Vec<_>>();
+    let mut moved: Vec<Vec<DVec3>> = rows.iter().enumerate().map(|(v, row)| at(v, row)).collect();
+    let mut suspects: Vec<(usize, usize)> = edges(surface).collect();
+    let averages = (AVERAGES * rows.len()).div_ceil(AVERAGED).clamp(AVERAGES, MOST_AVERAGES);
+    for _ in 0..ROUNDS {
+        let mut torn: Vec<(f64, u32)> = Vec::new();
+        for &(a, b) in &suspects {
+            let factor = longest(surface, a, b, |v, pose| moved[v][pose], poses.len());
+            if factor > allowed {
+                let rest = surface.positions[a].distance(surface.positions[b]).max(SHORT);
+                let reach = WIDTH * factor * rest / (allowed - 1.0);
+                torn.extend([(reach, a as u32), (reach, b as u32)]);
+            }
+        }
+        if torn.is_empty() {
+            break;
+        }
+        let region = within(surface, &torn);
+        for _ in 0..averages {
+            let next: Vec<(u32, Row)> =
+                region.iter().map(|&v| (v, averaged_row(surface, rows, v as usize, most))).collect();
+            next.into_iter().for_each(|(v, row)| rows[v as usize] = row);
+        }
+        region.iter().for_each(|&v| moved[v as usize] = at(v as usize, &rows[v as usize]));
+        let around =
+            |&v: &u32| surface.neighbours(v as usize).iter().map(move |&u| (v.min(u) as usize, v.max(u) as usize));
+        suspects = region.iter().flat_map(around).collect();
+        suspects.sort_unstable();
+        suspects.dedup();
+    }
+}
+
+/// Vertices that along edges are nearer to one of some vertices than that one's reach.
+fn within(surface: &Surface, from: &[(f64, u32)]) -> Vec<u32> {
+    let mut left: BTreeMap<u32, f64> = BTreeMap::new();
+    let mut heap: BinaryHeap<(u64, u32)> = from.iter().map(|&(reach, v)| (reach.to_bits(), v)).collect();
+    while let Some((bits, v)) = heap.pop() {
+        let reach = f64::from_bits(bits);
+        if left.contains_key(&v) {
+            continue;
+        }
+        left.insert(v, reach);
+        for &u in surface.neighbours(v as usize) {
+            let rest = reach - surface.positions[v as usize].distance(surface.positions[u as usize]);
+            if rest > 0.0 && !left.contains_key(&u) {
+                heap.push((rest.to_bits(), u));
+            }
+        }
+    }
+    left.into_keys().collect()
+}
+
+fn edges(surface: &Surface) -> impl Iterator<Item = (usize, usize)> + '_ {
+    let upward = |v: usize| surface.neighbours(v).iter().map(move |&u| (v, u as usize)).filter(|(v, u)| v < u);
+    (0..surface.len()).flat_map(upward)
+}
+
+/// The largest factor by which an edge becomes longer in any pose.
+fn longest(surface: &Surface, a: usize, b: usize, at: impl Fn(usize, usize) -> DVec3, poses: usize) -> f64 {
+    let rest = surface.positions[a].distance(surface.positions[b]).max(SHORT);
+    (0..poses).map(|pose| at(a, pose).distance_squared(at(b, pose))).fold(0.0, f64::max).sqrt() / rest
+}

@@ -1,0 +1,118 @@
+//! Proposals settled on the surface: the target is bent onto the source, starting from where the points have agreed that it
+//! lies, and then everything has its place.
+//!
+//! What the points say of each other is right on the whole and wrong by a few samples here and there; how one surface lies
+//! on another is decided there by the surfaces themselves.
+
+use super::consensus::Consensus;
+use super::surface::Surface;
+use crate::sequence::Sequence;
+use crate::transfer::kd_tree::KdTree;
+use crate::transfer::registration::{Effort, Ground, Pin, Registration};
+use crate::transfer::spline::Spline;
+use crate::transfer::surface::Surface as Shape;
+use glam::DVec3;
+
+/// Points that say where the target lies.
+const GUIDES: usize = 140;
+/// How far the spline through them may miss them, as a length: they are not exact.
+const LOOSE: f64 = 0.1;
+/// How far the shape that the bent target keeps is that which the guides suggest, not its own.
+const BELIEF: f64 = 0.5;
+/// Samples of the bent target near a point, whose cells are searched.
+const NEAR: usize = 6;
+/// What a difference of unit normals counts, as a length.
+const NORMAL: f64 = 0.1;
+/// A place that lies farther than this from the point when the target is bent is none.
+const FAR: f64 = 0.08;
+
+/// Both surfaces on their samples, ready to be laid on each other.
+pub struct Refiner {
+    source: Shape,
+    ground: Ground,
+    target: Shape,
+    registration: Registration,
+}
+
+impl Refiner {
+    /// `None` where one of the surfaces is no surface.
+    pub fn new(source: &Surface, target: &Surface) -> Option<Self> {
+        let [source, target] = [source, target].map(|surface| {
+            let sequence = Sequence::new("", surface.coarse.clone(), surface.places.clone(), Vec::new()).ok()?;
+            let shape = Shape::new(&sequence);
+            (!shape.is_empty() && shape.radius > 0.0 && shape.positions.iter().all(|p| p.is_finite())).then_some(shape)
+        });
+        let (source, target) = (source?, target?);
+        let registration = Registration::new(&target).ok()?;
+        Some(Self { ground: Ground::new(&source), source, target, registration })
+    }
+
+    /// The samples of the target where they come to lie on the source, in the source's lengths.
+    pub fn bent(&self, consensus: &Consensus) -> Vec<DVec3> {
+        let inward = |p: DVec3| self.source.inward(p);
+        let places = consensus.target_places();
+        let rest: Vec<DVec3> = self.target.vertex.iter().map(|&s| inward(places[s as usize])).collect();
+        let guides = consensus.guides(GUIDES);
+        let known: Vec<(DVec3, DVec3)> =
+            guides.iter().map(|&(from, to)| (inward(to), inward(from) - inward(to))).collect();
+        let spline = Spline::loose(&known, LOOSE);
+        let start: Vec<DVec3> = rest.iter().map(|&p| p + spline.at(p)).collect();
+        let shape: Vec<DVec3> = rest.iter().zip(&start).map(|(r, p)| r.lerp(*p, BELIEF)).collect();
+        let pins: Vec<Pin> = consensus
+            .given()
+            .map(|(point, sample)| Pin { vertex: self.target.place[sample as usize], point: inward(point) })
+            .collect();
+        let bent =
+            self.registration.bend((&self.source, &self.ground), &self.target, &shape, start, &pins, Effort::Once);
+        let outward = |p: DVec3| p * self.source.radius + self.source.centre;
+        (0..places.len()).map(|s| bent.get(self.target.place[s] as usize).map_or(places[s], |&p| outward(p))).collect()
+    }
+}
+
+/// The bent target as something on which to find points of the source.
+pub struct Found<'a> {
+    target: &'a Surface,
+    bent: Vec<DVec3>,
+    normals: Vec<DVec3>,
+    tree: KdTree<6>,
+}
+
+impl<'a> Found<'a> {
+    /// `bent` are the places of the target's samples on the source.
+    pub fn new(target: &'a Surface, bent: Vec<DVec3>) -> Self {
+        let mut normals = vec![DVec3::ZERO; bent.len()];
+        for face in &target.coarse {
+            let [a, b, c] = face.map(|s| bent[s as usize]);
+            let normal = (b - a).cross(c - a);
+            face.iter().for_each(|&s| normals[s as usize] += normal);
+        }
+        normals.iter_mut().for_each(|n| *n = n.normalize_or_zero());
+        let points: Vec<[f64; 6]> = bent.iter().zip(&normals).map(|(&p, &n)| key(p, n)).collect();
+        Self { target, bent, normals, tree: KdTree::new(&points) }
+    }
+
+    /// The vertex of the target that lies nearest to a point of the source with a normal; `None` if none lies near.
+    pub fn vertex(&self, point: DVec3, normal: DVec3) -> Option<u32> {
+        let to = key(point, normal);
+        let mut near: Vec<u32> = Vec::with_capacity(NEAR);
+        while near.len() < NEAR {
+            let Some(sample) = self.tree.nearest(&to, |s| !near.contains(&s)) else { break };
+            near.push(sample);
+        }
+        let cost = |v: u32| {
+            let mean = |of: &[DVec3]| -> DVec3 {
+                self.target.readings[v as usize].iter().map(|&(s, w)| f64::from(w) * of[s as usize]).sum()
+            };
+            let (p, n) = (mean(&self.bent), mean(&self.normals).normalize_or_zero());
+            let off = p.distance_squared(point);
+            (off + NORMAL * NORMAL * n.distance_squared(normal), off)
+        };
+        let members = near.iter().flat_map(|&s| &self.target.members[s as usize]);
+        let best = members.map(|&v| (v, cost(v))).min_by(|a, b| a.1.0.total_cmp(&b.1.0).then(a.0.cmp(&b.0)))?;
+        (best.1.1 < FAR * FAR).then_some(best.0)
+    }
+}
+
+fn key(p: DVec3, n: DVec3) -> [f64; 6] {
+    [p.x, p.y, p.z, NORMAL * n.x, NORMAL * n.y, NORMAL * n.z]
+}
