@@ -72,6 +72,18 @@ fn points_and_lines_are_left_out() {
 }
 
 #[test]
+fn triangles_that_are_not_whole_are_left_out_in_words() {
+    let mut maker = triangle();
+    maker.json["accessors"][0] = json!({"bufferView": 0, "componentType": 5126, "type": "VEC3", "count": 3});
+    let indices = maker.accessor(&[0, 1, 2, 0, 1], 5121, "SCALAR", 5);
+    maker.json["meshes"][0]["primitives"][0]["indices"] = json!(indices);
+    let imported = import(&maker);
+    assert_eq!(imported.sequence.faces(), [[0, 1, 2]]);
+    let said = imported.warnings.iter().find(|w| w.code == "incomplete-triangle").unwrap();
+    assert!(said.message.ends_with("2 corners were left out."), "{}", said.message);
+}
+
+#[test]
 fn sparse_accessors_with_and_without_a_base() {
     for with_base in [true, false] {
         let mut maker = triangle();
