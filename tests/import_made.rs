@@ -55,7 +55,8 @@ fn strips_fans_and_index_types() {
                 json!({"attributes": {"POSITION": positions}, "indices": indices, "mode": mode});
             let imported = import(&maker);
             assert_eq!(imported.sequence.faces(), faces, "mode {mode}");
-            assert_eq!(imported.warnings.len(), 1, "{:?}", imported.warnings);
+            // That it stands still, and that four corners are not whole triangles.
+            assert_eq!(imported.warnings.len(), 1 + usize::from(mode == 4), "{:?}", imported.warnings);
         }
     }
 }
