@@ -116,6 +116,38 @@ fn bind_poses_stand_like_the_animation() {
     }
 }
 
+/// What another project keeps to try its reader with: refused with the reason, or mended and told. Where only the look
+/// is damaged (materials, textures), the shape is read.
+#[test]
+fn malformed_files_are_refused_or_mended_in_words() {
+    let Some(data) = data() else { return };
+    let open = |name: &str| {
+        let path = data.join("gltf/assimp").join(name);
+        open(&with_neighbours(&path), &Options::default())
+    };
+    for (name, part) in [
+        ("IndexOutOfRange/IndexOutOfRange.gltf", "names vertex 255, but there are only 24 vertices"),
+        ("IndexOutOfRange/AllIndicesOutOfRange.gltf", "names vertex 65535"),
+        ("BoxWithInfinites-glTF-Binary/BoxWithInfinites.glb", "not a finite number"),
+        ("MissingBin/BoxTextured.gltf", "keeps its data in BoxTextured0.bin, which was not given"),
+        ("SchemaFailures/sceneWrongType.gltf", "the default scene is \"hello\""),
+        ("TestNoRootNode/NoScene.gltf", "shows no triangle mesh"),
+        ("TestNoRootNode/SceneWithoutNodes.gltf", "shows no triangle mesh"),
+        ("RecursiveNodes/RecursiveNodes.gltf", "is its own ancestor"),
+        ("wrongTypes/badArray.gltf", "mesh 0 of"),
+    ] {
+        let why = open(name).unwrap_err().0;
+        assert!(why.contains(part), "{name}: {why}");
+    }
+    for name in ["badExtension", "badNumber", "badObject", "badString", "badUint"] {
+        assert_eq!(open(&format!("wrongTypes/{name}.gltf")).unwrap().sequence.faces().len(), 12, "{name}");
+    }
+    let mended = open("IncorrectVertexArrays/Cube.gltf").unwrap();
+    for code in ["primitive-left-out", "incomplete-triangle"] {
+        assert!(mended.warnings.iter().any(|w| w.code == code), "{code}: {:?}", mended.warnings);
+    }
+}
+
 #[test]
 fn every_asset_opens_or_is_refused_in_words() {
     let Some(data) = data() else { return };

@@ -6,8 +6,8 @@ use super::accessor::Accessor;
 use super::buffers::Buffers;
 use super::document::Document;
 use super::draco::{self, Unpacked};
-use crate::import::ImportError;
 use crate::import::limits::Budget;
+use crate::import::{ImportError, counted};
 use crate::warning::Warning;
 use glam::{DVec3, Vec3};
 use gltf::json::accessor::Type;
@@ -58,7 +58,7 @@ pub fn read(
     let Some(primitive) = document.meshes.get(mesh).and_then(|m| m.primitives.get(number)) else { return Ok(None) };
     let unpacked = unpack(document, buffers, (mesh, number), joints.is_some(), budget)?;
     let unpacked = unpacked.as_ref();
-    let mut reader = Reader { document, buffers, primitive, unpacked, whose: &whose, budget };
+    let mut reader = Reader { document, buffers, primitive, unpacked, whose: &whose, budget, left_over: 0 };
     let why = match primitive.mode {
         Checked::Invalid => "is of an unknown kind",
         Checked::Valid(Mode::Points | Mode::Lines | Mode::LineLoop | Mode::LineStrip) => "is made of points or lines",
@@ -66,7 +66,14 @@ pub fn read(
             None => "has no positions",
             Some(positions) => match reader.shape(mode, &positions, joints)? {
                 None => "has no triangle",
-                shape => return Ok(shape),
+                shape => {
+                    if reader.left_over > 0 {
+                        let rest = counted(reader.left_over, "corner was", "corners were");
+                        let what = format!("Primitive {number} of {whose} ends within a triangle; {rest} left out.");
+                        warnings.push(Warning::new("incomplete-triangle", what));
+                    }
+                    return Ok(shape);
+                }
             },
         },
     };
@@ -104,6 +111,8 @@ struct Reader<'a> {
     /// Its mesh, for sentences.
     whose: &'a str,
     budget: &'a mut Budget,
+    /// Corners after the last whole triangle.
+    left_over: usize,
 }
 
 impl<'a> Reader<'a> {
@@ -115,7 +124,11 @@ impl<'a> Reader<'a> {
                 self.budget.take(unpacked.faces.len() as u64, 12, self.whose)?;
                 unpacked.faces.clone()
             }
-            None => triangles(mode, &self.corners(positions.len())?),
+            None => {
+                let corners = self.corners(positions.len())?;
+                self.left_over = if mode == Mode::Triangles { corners.len() % 3 } else { 0 };
+                triangles(mode, &corners)
+            }
         };
         let (used, faces) = compact(listed, positions.len());
         if faces.is_empty() {
