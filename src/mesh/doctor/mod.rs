@@ -1,6 +1,6 @@
 //! What is wrong with a mesh, what was done about it, and what it means for the result.
 //!
-//! A check a file; each looks at the same [`Chart`] and finds one thing or nothing. A mesh of 200,000 faces takes a
+//! A check a file; each looks at the same `Chart` and finds one thing or nothing. A mesh of 200,000 faces takes a
 //! fraction of a second: sorting is the slowest step.
 //!
 //! | file | finds |
