@@ -36,7 +36,7 @@ const ASKED: f64 = 0.3;
 const ALIKE: f64 = 0.04;
 
 /// What more a place may cost that the surfaces themselves suggest: another leg costs more.
-const DEARER: f64 = 0.003;
+const DEARER: f64 = 0.012;
 
 /// A proposed target point.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]

@@ -101,6 +101,9 @@ impl Transfer {
         }
         let parameters = self.parameters();
         if parameters.method.moves_vertices() {
+            if self.light {
+                return Err(Refusal("a skin needs handles, and this method has none: leave --light out".to_owned()));
+            }
             return self.run_by_faces(&source, &target, &pairs, &parameters, reading);
         }
         let result = transfer(&source.sequence, &target.sequence, &pairs, &parameters, &mut Silent)?;
