@@ -51,6 +51,8 @@ struct About {
     options: Options,
     recipe: Recipe,
     creatures: &'static [&'static str],
+    /// Of each creature.
+    motions: Vec<Vec<&'static str>>,
 }
 
 #[wasm_bindgen]
@@ -71,6 +73,7 @@ impl Engine {
             options: Options::default(),
             recipe: Recipe::default(),
             creatures: zoo::NAMES,
+            motions: zoo::NAMES.iter().map(|name| zoo::motions(name)).collect(),
         })
     }
 
