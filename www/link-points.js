@@ -6,7 +6,9 @@ import { fresh, MOST_POINTS } from './keypoints.js';
 
 const PROPOSED = '~';
 const AWAY = '-';
-const RECIPE = ['faces', 'poses', 'exact'];
+/** In place of `pairs`: the true places of all points that two creatures have in common. */
+const LANDMARKS = 'landmarks';
+const RECIPE = ['faces', 'poses', 'exact', 'motion', 'size', 'build', 'head', 'neck', 'legs', 'arms', 'tail'];
 
 /** Writes the state of key points, target and transfer into the fields of a link. */
 export function writePoints(app, fields, own = false) {
@@ -39,6 +41,7 @@ export function placesOf(fields) {
   const pairs = (fields.pairs ?? '').split(',');
   return {
     points: sources.slice(0, MOST_POINTS).map((vertex, i) => read(vertex, pairs[i] ?? '')),
+    landmarks: fields.pairs === LANDMARKS,
     selected: Number.isInteger(Number(fields.point)) ? Number(fields.point) - 1 : -1,
   };
 }
@@ -56,7 +59,8 @@ function read(vertex, text) {
  * @param {object|null} recipe of the target
  * @param {{files: {name: string, blob: Blob}[], options: object}|null} target the visitor's own
  */
-export async function goToPoints(app, { points, selected }, recipe, target = null) {
+export async function goToPoints(app, { points, selected, landmarks }, recipe, target = null) {
+  if (landmarks && recipe && app.source.kind === 'zoo') return app.target.openTwin(recipe);
   const { vertices } = app.sequence.sizes;
   const known = points.filter(({ source }) => source < vertices);
   if (known.length) app.amend({ points: known.map(({ source }) => fresh(source)), count: known.length });

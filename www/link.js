@@ -13,7 +13,7 @@ const VERSION = 'v1';
 /** Browsers limit how often the address may be replaced, in milliseconds. */
 const WRITE_EVERY = 400;
 /** The hash holds the creature's recipe under these names. */
-const RECIPE = ['faces', 'poses', 'exact'];
+const RECIPE = ['faces', 'poses', 'exact', 'motion', 'size', 'build', 'head', 'neck', 'legs', 'arms', 'tail'];
 
 /** @returns {Record<string, string>} empty if there is no state, or one of another version */
 export function readLink(hash = location.hash) {
@@ -85,7 +85,8 @@ export function recipeOf(fields, { creatures, recipe }, [key, prefix] = ['zoo', 
   if (!creatures.includes(fields[key])) return null;
   const wanted = { name: fields[key] };
   for (const name of RECIPE) {
-    const value = parse(fields[prefix + name]);
+    const text = fields[prefix + name];
+    const value = typeof recipe[name] === 'string' ? text : parse(text);
     if (typeof value === typeof recipe[name]) wanted[name] = value;
   }
   return wanted;

@@ -60,12 +60,24 @@ export class Target {
    * @param {string} source @param {string} target names
    */
   async openPair(source, target) {
-    const { app } = this;
-    const recipes = [source, target].map((name) => ({ ...app.about.recipe, name }));
-    const pairs = await app.work.run('pairs', 'finding the pairs', () =>
-      app.engine.call('landmarks', { source: recipes[0], target: recipes[1] }));
-    if (!pairs || !(await app.openCreature(recipes[0]))) return;
-    await this.openCreature(recipes[1], () => Array.from(pairs.source, (vertex, i) =>
+    const recipes = [source, target].map((name) => ({ ...this.app.about.recipe, name }));
+    const pairs = await this.#pairs(...recipes);
+    if (pairs && (await this.app.openCreature(recipes[0]))) await this.#openWith(recipes[1], pairs);
+  }
+
+  /** Opens a creature beside the one that is open, with the true pairs between them. */
+  async openTwin(recipe) {
+    const target = { ...this.app.about.recipe, ...recipe };
+    const pairs = await this.#pairs(this.app.source.recipe, target);
+    if (pairs) await this.#openWith(target, pairs);
+  }
+
+  #pairs(source, target) {
+    return this.app.work.run('pairs', 'finding the pairs', () => this.app.engine.call('landmarks', { source, target }));
+  }
+
+  #openWith(recipe, pairs) {
+    return this.openCreature(recipe, () => Array.from(pairs.source, (vertex, i) =>
       Object.freeze({ source: vertex, target: pairs.target[i], state: 'placed', confidence: 1 })));
   }
 

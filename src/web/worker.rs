@@ -58,6 +58,8 @@ struct About {
     options: Options,
     recipe: Recipe,
     creatures: &'static [&'static str],
+    /// Of each creature.
+    motions: Vec<Vec<&'static str>>,
 }
 
 #[wasm_bindgen]
@@ -78,6 +80,7 @@ impl Engine {
             options: Options::default(),
             recipe: Recipe::default(),
             creatures: zoo::NAMES,
+            motions: zoo::NAMES.iter().map(|name| zoo::motions(name)).collect(),
         })
     }
 

@@ -163,7 +163,7 @@ const WALK: Walk = Walk {
     rise: 0.007,
     pitch: 0.8,
     roll: 1.6,
-    nod: 0.9,
+    nod: 1.05,
     tail: 1.3,
     fore_sole: [-0.01, 0.10],
     hind_sole: [-0.01, 0.10],

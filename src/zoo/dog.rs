@@ -176,7 +176,7 @@ const WALK: Walk = Walk {
     rise: 0.008,
     pitch: 0.9,
     roll: 1.8,
-    nod: 0.9,
+    nod: 1.05,
     tail: 1.7,
     fore_sole: [-0.02, 0.11],
     hind_sole: [-0.02, 0.11],

@@ -181,7 +181,7 @@ const WALK: Walk = Walk {
     rise: 0.006,
     pitch: 0.7,
     roll: 1.8,
-    nod: 0.9,
+    nod: 1.05,
     tail: 1.2,
     fore_sole: [-0.09, 0.13],
     hind_sole: [-0.09, 0.12],

@@ -187,7 +187,7 @@ const WALK: Walk = Walk {
     rise: 0.008,
     pitch: 0.7,
     roll: 1.5,
-    nod: 0.95,
+    nod: 1.05,
     tail: 1.0,
     fore_sole: [-0.01, 0.09],
     hind_sole: [-0.01, 0.09],

@@ -21,6 +21,8 @@ enum At {
     Tip,
     /// So far along the bone (0 at its joint, 1 at its end), in a direction (on the left side, where there are two).
     Side(f64, [f64; 3]),
+    /// On a flat cloth: along from the pole, up.
+    Cloth(f64, f64),
 }
 
 const fn tip(name: &'static str, bone: &'static str) -> Place {
@@ -31,6 +33,10 @@ const fn side(name: &'static str, bone: &'static str, along: f64, direction: [f6
     Place { name, bone, at: At::Side(along, direction) }
 }
 
+const fn cloth(name: &'static str, along: f64, up: f64) -> Place {
+    Place { name, bone: "cloth", at: At::Cloth(along, up) }
+}
+
 const UP: [f64; 3] = [0.0, 1.0, 0.0];
 const DOWN: [f64; 3] = [0.0, -1.0, 0.0];
 const FRONT: [f64; 3] = [0.0, 0.0, 1.0];
@@ -38,7 +44,7 @@ const BACK: [f64; 3] = [0.0, 0.0, -1.0];
 const LEFT: [f64; 3] = [1.0, 0.0, 0.0];
 const RIGHT: [f64; 3] = [-1.0, 0.0, 0.0];
 
-/// Of horse and camel.
+/// Of everything on four legs.
 const QUADRUPED: &[Place] = &[
     tip("muzzle", "head"),
     side("poll", "head", 0.0, [0.0, 1.0, -0.3]),
@@ -160,14 +166,112 @@ const HAND: &[Place] = &[
     side("elbow", "forearm", 0.1, BACK),
 ];
 
+const BIRD: &[Place] = &[
+    tip("beak", "head"),
+    side("crown", "head", 0.25, UP),
+    side("nape", "neck", 0.5, [0.0, 1.0, -0.4]),
+    side("throat", "neck", 0.5, [0.0, -1.0, 0.4]),
+    side("back", "trunk", 0.5, UP),
+    side("breast", "trunk", 0.85, DOWN),
+    side("belly", "trunk", 0.2, DOWN),
+    tip("tail tip", "tail"),
+    side("left shoulder", "left inner wing", 0.25, UP),
+    side("left elbow", "left middle wing", 0.15, FRONT),
+    side("left wrist", "left outer wing", 0.15, FRONT),
+    side("left wing, below", "left middle wing", 0.5, DOWN),
+    tip("left wing tip", "left outer wing"),
+    tip("left claws", "left foot"),
+    side("right shoulder", "right inner wing", 0.25, UP),
+    side("right elbow", "right middle wing", 0.15, FRONT),
+    side("right wrist", "right outer wing", 0.15, FRONT),
+    side("right wing, below", "right middle wing", 0.5, DOWN),
+    tip("right wing tip", "right outer wing"),
+    tip("right claws", "right foot"),
+];
+
+const OCTOPUS: &[Place] = &[
+    tip("mantle tip", "mantle"),
+    side("mantle, front", "mantle", 0.4, FRONT),
+    side("mantle, back", "mantle", 0.4, BACK),
+    side("mantle, left", "mantle", 0.4, LEFT),
+    side("mantle, right", "mantle", 0.4, RIGHT),
+    side("brow", "head", 0.8, FRONT),
+    side("left first arm, root", "left first arm 2", 0.1, UP),
+    tip("left first arm, tip", "left first arm 4"),
+    side("left second arm, root", "left second arm 2", 0.1, UP),
+    tip("left second arm, tip", "left second arm 4"),
+    side("left third arm, root", "left third arm 2", 0.1, UP),
+    tip("left third arm, tip", "left third arm 4"),
+    side("left fourth arm, root", "left fourth arm 2", 0.1, UP),
+    tip("left fourth arm, tip", "left fourth arm 4"),
+    side("right first arm, root", "right first arm 2", 0.1, UP),
+    tip("right first arm, tip", "right first arm 4"),
+    side("right second arm, root", "right second arm 2", 0.1, UP),
+    tip("right second arm, tip", "right second arm 4"),
+    side("right third arm, root", "right third arm 2", 0.1, UP),
+    tip("right third arm, tip", "right third arm 4"),
+    side("right fourth arm, root", "right fourth arm 2", 0.1, UP),
+    tip("right fourth arm, tip", "right fourth arm 4"),
+];
+
+const CACTUS: &[Place] = &[
+    side("pot, front", "pot", 0.4, FRONT),
+    side("pot, back", "pot", 0.4, BACK),
+    side("pot, left", "pot", 0.4, LEFT),
+    side("pot, right", "pot", 0.4, RIGHT),
+    side("stem 1, front", "stem 1", 0.5, FRONT),
+    side("stem 1, back", "stem 1", 0.5, BACK),
+    side("stem 2, front", "stem 2", 0.5, FRONT),
+    side("stem 2, back", "stem 2", 0.5, BACK),
+    side("stem 3, front", "stem 3", 0.5, FRONT),
+    side("stem 3, back", "stem 3", 0.5, BACK),
+    side("stem 4, front", "stem 4", 0.5, FRONT),
+    side("stem 4, back", "stem 4", 0.5, BACK),
+    side("stem 5, front", "stem 5", 0.5, FRONT),
+    side("stem 5, back", "stem 5", 0.5, BACK),
+    tip("flower", "stem 5"),
+    side("long arm, elbow", "long arm 1", 0.6, DOWN),
+    side("long arm, front", "long arm 2", 0.5, FRONT),
+    tip("long arm, tip", "long arm 3"),
+    side("short arm, elbow", "short arm 1", 0.6, DOWN),
+    side("short arm, front", "short arm 2", 0.5, FRONT),
+    tip("short arm, tip", "short arm 3"),
+];
+
+/// A mesh of places on the cloth: letters from the pole on, numbers upwards.
+const CLOTH: &[Place] = &[
+    cloth("A1", 0.0, 0.0),
+    cloth("A2", 0.0, 0.5),
+    cloth("A3", 0.0, 1.0),
+    cloth("B1", 0.2, 0.0),
+    cloth("B2", 0.2, 0.5),
+    cloth("B3", 0.2, 1.0),
+    cloth("C1", 0.4, 0.0),
+    cloth("C2", 0.4, 0.5),
+    cloth("C3", 0.4, 1.0),
+    cloth("D1", 0.6, 0.0),
+    cloth("D2", 0.6, 0.5),
+    cloth("D3", 0.6, 1.0),
+    cloth("E1", 0.8, 0.0),
+    cloth("E2", 0.8, 0.5),
+    cloth("E3", 0.8, 1.0),
+    cloth("F1", 1.0, 0.0),
+    cloth("F2", 1.0, 0.5),
+    cloth("F3", 1.0, 1.0),
+];
+
 /// The places of a creature by its name.
 fn places(name: &str) -> Vec<Place> {
     match name {
-        "horse" | "camel" => QUADRUPED.to_vec(),
-        "person" | "person-arms-out" => [PERSON, LIMBS].concat(),
+        "horse" | "camel" | "giraffe" | "dog" | "cat" | "elephant" => QUADRUPED.to_vec(),
+        "person" | "person-arms-out" | "person-broad" | "person-small" | "robot" => [PERSON, LIMBS].concat(),
         "dinosaur" => [DINOSAUR, LIMBS].concat(),
         "snake" => SNAKE.to_vec(),
         "hand" => HAND.to_vec(),
+        "bird" => BIRD.to_vec(),
+        "octopus" => OCTOPUS.to_vec(),
+        "cactus" => CACTUS.to_vec(),
+        "cloth" => CLOTH.to_vec(),
         _ => Vec::new(),
     }
 }
@@ -205,6 +309,7 @@ fn vertex(creature: &Creature, place: &Place, by_bone: &[Vec<[u32; 3]>]) -> Opti
     let number = creature.skeleton.find(place.bone)?;
     let bone = creature.skeleton.bones.get(number as usize)?;
     let (along, direction) = match place.at {
+        At::Cloth(along, up) => return on_cloth(creature, along, up),
         At::Tip => (0.5, bone.end - bone.joint),
         At::Side(along, [x, y, z]) => (along, DVec3::new(if place.bone.starts_with("right") { -x } else { x }, y, z)),
     };
@@ -215,7 +320,7 @@ fn vertex(creature: &Creature, place: &Place, by_bone: &[Vec<[u32; 3]>]) -> Opti
     let crossings = faces.iter().filter_map(|face| Some((crossed(from, direction, face.map(point))?, face)));
     let hit = match place.at {
         At::Tip => crossings.max_by(|a, b| a.0.total_cmp(&b.0)),
-        At::Side(..) => crossings.min_by(|a, b| a.0.total_cmp(&b.0)),
+        At::Side(..) | At::Cloth(..) => crossings.min_by(|a, b| a.0.total_cmp(&b.0)),
     };
     let nearest = |to: DVec3, among: &mut dyn Iterator<Item = u32>| {
         among.min_by(|&v, &w| to.distance_squared(point(v)).total_cmp(&to.distance_squared(point(w))))
@@ -231,11 +336,23 @@ fn vertex(creature: &Creature, place: &Place, by_bone: &[Vec<[u32; 3]>]) -> Opti
     }
 }
 
+/// The vertex nearest to a place of the flat cloth.
+fn on_cloth(creature: &Creature, along: f64, up: f64) -> Option<u32> {
+    let span = |a: (DVec3, DVec3), &p: &DVec3| (a.0.min(p), a.1.max(p));
+    let (low, high) = creature.made.iter().fold((DVec3::INFINITY, DVec3::NEG_INFINITY), span);
+    let at = low + (high - low) * DVec3::new(0.0, up, 1.0 - along);
+    let away = |p: &DVec3| p.distance_squared(at);
+    (0..).zip(&creature.made).min_by(|a, b| away(a.1).total_cmp(&away(b.1))).map(|(vertex, _)| vertex)
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::zoo::{NAMES, Recipe, make};
+    use crate::zoo::{Recipe, make};
     use std::collections::BTreeSet;
+
+    const MEASURED: [&str; 10] =
+        ["horse", "camel", "giraffe", "dog", "cat", "person", "person-arms-out", "dinosaur", "snake", "hand"];
 
     fn creature(name: &str, faces: usize) -> Creature {
         make(&Recipe { name: name.into(), faces, poses: 1, exact: false, ..Recipe::default() }).unwrap()
@@ -243,7 +360,7 @@ mod tests {
 
     #[test]
     fn every_creature_has_its_places_at_every_size() {
-        for name in NAMES {
+        for name in MEASURED {
             let fine = creature(name, 40_000);
             let there = landmarks(&fine);
             assert!(there.len() >= 18 && there.len() == places(name).len(), "{name}: {}", there.len());
@@ -264,7 +381,7 @@ mod tests {
 
     #[test]
     fn left_is_left_and_mirrored() {
-        for name in ["horse", "camel", "person", "dinosaur"] {
+        for name in ["horse", "camel", "giraffe", "dog", "cat", "person", "dinosaur"] {
             let creature = creature(name, 12_000);
             let places = landmarks(&creature);
             for &(label, v) in places.iter().filter(|place| place.0.starts_with("left")) {

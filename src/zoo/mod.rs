@@ -1,8 +1,9 @@
 //! Creatures made by code, each with its true parts.
 //!
-//! A creature's own file ([`horse`], [`camel`], [`person`], [`dinosaur`], [`snake`], [`hand`]) describes its bones, the
-//! limbs around them and how it moves. The rest is common: [`limb`]s are joined to a [`field`], the [`mesher`] makes a closed mesh of
-//! it, [`weights`] tie the mesh to the bones of the [`skeleton`], and [`gait`]s move them.
+//! A creature's own file ([`horse`], [`elephant`], [`bird`], [`octopus`], …) describes its bones, the limbs around them
+//! and how it moves. The rest is common: [`limb`]s are joined to a [`field`], the [`mesher`] makes a closed mesh of
+//! it, [`weights`] tie the mesh to the bones of the [`skeleton`], and [`gait`]s move them; [`proportions`] change a body before that. The [`robot`] is
+//! made of rigid [`pieces`] instead, and the [`cloth`] moves by itself.
 //!
 //! Creatures stand on the ground y = 0, y is up, and they face +z; their left is +x. Lengths are about metres.
 

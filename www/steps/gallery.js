@@ -1,21 +1,58 @@
-/** Pairs of creatures that show what a transfer can do, with the true places of their points. */
+/**
+ * What there is to see: pairs of creatures that show what a transfer can do, with the true places of their points, and
+ * creatures in motions of their own. Every card is a link that can be copied.
+ */
 import { h } from '../dom.js';
 import { title } from '../format.js';
 
-export const PAIRS = [['horse', 'camel'], ['person', 'dinosaur'], ['snake', 'hand']];
+const PAIRS = [
+  ['horse', 'camel', 'A camel that walks like a horse'],
+  ['person', 'dinosaur', 'A dinosaur that walks like a person'],
+  ['snake', 'hand', 'A hand that winds like a snake'],
+  ['cat', 'elephant', 'An elephant that walks like a cat'],
+  ['dog', 'giraffe', 'A giraffe that walks like a dog'],
+  ['person-small', 'robot', 'A robot that walks like a child'],
+];
 
-const SPOKEN = { horse: 'A camel that walks like a horse', person: 'A dinosaur that walks like a person', snake: 'A hand that winds like a snake' };
+const SIGHTS = [
+  ['horse', 'gallop', 'A horse that gallops'],
+  ['elephant', 'wave', 'An elephant that curls its trunk'],
+  ['bird', 'fly', 'An eagle that flies'],
+  ['octopus', 'swim', 'An octopus that swims by jets'],
+  ['cat', 'collapse', 'A cat whose legs give way'],
+  ['cactus', 'bend', 'A cactus that hears music'],
+  ['robot', 'wave', 'A robot of separate pieces that waves'],
+  ['cloth', 'wave', 'A flag, which has no rigid parts'],
+];
 
 /** @param {import('../app.js').App} app */
 export function gallery(app) {
-  const known = PAIRS.filter((pair) => pair.every((name) => app.about.creatures.includes(name)));
-  return h('div', { class: 'gallery' }, ...known.map(([source, target]) =>
-    h('button', { type: 'button', class: 'pair-card', id: `pair-${source}-${target}`, title: SPOKEN[source], on: { click: () => openPair(app, source, target) } },
-      h('span', { class: 'pair-pictures' }, picture(source), picture(target)),
-      h('span', { class: 'small' }, `${title(source)} → ${title(target)}`))));
+  const known = (...names) => names.every((name) => app.about.creatures.includes(name));
+  return h('div', { class: 'gallery' },
+    ...PAIRS.filter(([source, target]) => known(source, target)).map((pair) => pairCard(app, ...pair)),
+    ...SIGHTS.filter(([name]) => known(name)).map(sightCard));
 }
 
-const picture = (name) => h('img', { src: new URL(`../pictures/${name}.webp`, import.meta.url).href, alt: '', width: 72, height: 54, loading: 'lazy', draggable: 'false' });
+function pairCard(app, source, target, spoken) {
+  const open = (event) => {
+    // With a key held down it is a link like any other.
+    if (event.ctrlKey || event.metaKey || event.shiftKey) return;
+    event.preventDefault();
+    openPair(app, source, target);
+  };
+  return h('a', { class: 'pair-card', id: `pair-${source}-${target}`, title: spoken, on: { click: open },
+    href: `#v1;zoo=${source};step=transfer;target=${target};pairs=landmarks` },
+    h('span', { class: 'pair-pictures' }, picture(source), picture(target)),
+    h('span', { class: 'small' }, `${title(source)} → ${title(target)}`));
+}
+
+function sightCard([name, motion, spoken]) {
+  return h('a', { class: 'pair-card', id: `sight-${name}-${motion}`, title: spoken, href: `#v1;zoo=${name};motion=${motion}` },
+    h('span', { class: 'pair-pictures' }, picture(`${name}-${motion}`)),
+    h('span', { class: 'small' }, spoken));
+}
+
+const picture = (name) => h('img', { src: new URL(`../pictures/${name}.png`, import.meta.url).href, alt: '', width: 84, height: 63, loading: 'lazy', draggable: 'false' });
 
 async function openPair(app, source, target) {
   await app.target.openPair(source, target);

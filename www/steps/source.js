@@ -51,7 +51,7 @@ function build(app) {
   update();
   return h('div', { class: 'step' }, h('h2', {}, 'Source'), current, health.element,
     h('h3', {}, 'Creatures'), gallery,
-    h('h3', {}, 'One moves like the other'), pairGallery(app),
+    h('h3', {}, 'Worth seeing'), pairGallery(app),
     h('h3', {}, 'Your own'), fileButton(app),
     h('p', { class: 'small faint' }, 'Or drop it anywhere: a glTF or GLB with an animation, numbered OBJ, OFF, PLY or STL files, a folder or zip of them; poses may also follow their mesh. It never leaves this computer.'),
     fold('What a source is', { load: () => lesson('source') }));
@@ -70,7 +70,10 @@ function fileButton(app) {
 function creatureOptions(app) {
   const { recipe } = app.source;
   const sizes = [...new Set([...DETAIL, recipe.faces])].sort((a, b) => a - b);
+  const motions = app.about.motions[app.about.creatures.indexOf(recipe.name)] ?? [];
   return h('div', { class: 'stack' },
+    motions.length > 1 && select('Motion', motions.map((name) => [name, title(name)]), recipe.motion || motions[0],
+      (motion) => app.openCreature({ ...recipe, motion: motion === motions[0] ? '' : motion })),
     select('Detail', sizes.map((faces) => [String(faces), plural(faces, 'face')]), String(recipe.faces),
       (faces) => app.openCreature({ ...recipe, faces: Number(faces) })),
     toggle('One bone for each vertex', recipe.exact, (exact) => app.openCreature({ ...recipe, exact }),

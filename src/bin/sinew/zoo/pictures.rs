@@ -10,6 +10,8 @@ use std::path::Path;
 
 /// Pixels of a portrait.
 const PORTRAIT: [usize; 2] = [168, 126];
+/// Steps of brightness in a portrait are this wide: files are smaller and no eye sees it.
+const STEP: u8 = 4;
 /// Pixels of each pose in a strip, and how many there are.
 const FRAME: [usize; 2] = [180, 150];
 const FRAMES: usize = 8;
@@ -17,7 +19,8 @@ const FRAMES: usize = 8;
 const LEFT: f64 = 52.0;
 const UP: f64 = 12.0;
 
-/// Draws the named creatures into a folder: `NAME.png`, `NAME-MOTION.png` and `index.html`.
+/// Draws the named creatures into a folder: `NAME.png`, `NAME-MOTION.png`, a strip of poses for each motion, and
+/// `index.html` with all of them.
 pub fn write(folder: &Path, names: &[&str], recipe: impl Fn(&str) -> Recipe) -> Result<(), Refusal> {
     if let Some(name) = names.iter().find(|name| !NAMES.contains(name)) {
         return Err(unknown(name));
@@ -34,10 +37,12 @@ pub fn write(folder: &Path, names: &[&str], recipe: impl Fn(&str) -> Recipe) -> 
             }
             let recipe = Recipe { motion: motion.to_owned(), poses: FRAMES, ..wanted.clone() };
             let creature = make(&recipe).ok_or_else(|| unknown(name))?;
-            output::write(&folder.join(format!("{name}-{motion}.png")), png(&strip(&creature))?)?;
-            let _ = writeln!(page, "<p>{motion}<br><img src=\"{name}-{motion}.png\" alt=\"\"></p>");
+            let portrait = png(&portrait(&creature, motion))?;
+            output::write(&folder.join(format!("{name}-{motion}.png")), &portrait)?;
+            output::write(&folder.join(format!("{name}-{motion}-strip.png")), png(&strip(&creature))?)?;
+            let _ = writeln!(page, "<p>{motion}<br><img src=\"{name}-{motion}-strip.png\" alt=\"\"></p>");
             if number == 0 || !wanted.motion.is_empty() {
-                output::write(&folder.join(format!("{name}.png")), png(&portrait(&creature))?)?;
+                output::write(&folder.join(format!("{name}.png")), &portrait)?;
             }
         }
     }
@@ -56,22 +61,29 @@ const HEAD: &str = "<!doctype html>
 <h1>The zoo</h1>
 ";
 
-/// Which pose shows a creature best.
-fn best_pose(name: &str) -> usize {
-    match name {
-        "horse" | "camel" => 3,
+/// Which pose shows a creature in a motion best.
+fn best_pose(name: &str, motion: &str) -> usize {
+    match (name, motion) {
+        ("bird" | "person" | "robot" | "hand", "fly" | "walk" | "wave" | "grasp") => 0,
+        ("horse" | "camel" | "giraffe" | "dog" | "cat" | "elephant", "walk" | "wave" | "collapse") => 3,
+        (_, "gallop" | "swim") => 2,
+        ("cloth", _) => 5,
         _ => 1,
     }
 }
 
 /// A creature in its most telling pose.
-fn portrait(creature: &Creature) -> Picture {
+fn portrait(creature: &Creature, motion: &str) -> Picture {
     let poses = creature.sequence.poses();
-    let pose = poses.get(best_pose(creature.sequence.name()) % poses.len().max(1));
+    let pose = poses.get(best_pose(creature.sequence.name(), motion) % poses.len().max(1));
     let points = pose.map_or(creature.sequence.reference(), |pose| &pose.positions);
     let [width, height] = PORTRAIT;
     let eye = Eye::around(points.iter(), LEFT, UP, width as f64 / height as f64);
-    paint(creature, points, &eye, PORTRAIT)
+    let mut portrait = paint(creature, points, &eye, PORTRAIT);
+    for value in portrait.pixels.as_flattened_mut() {
+        *value = if *value > 255 - STEP { 255 } else { (*value + STEP / 2) / STEP * STEP };
+    }
+    portrait
 }
 
 /// All poses side by side, seen from one place, after the reference pose.
