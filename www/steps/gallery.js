@@ -9,9 +9,9 @@ const PAIRS = [
   ['horse', 'camel', 'A camel that walks like a horse'],
   ['person', 'dinosaur', 'A dinosaur that walks like a person'],
   ['snake', 'hand', 'A hand that winds like a snake'],
-  ['cat', 'elephant', 'An elephant that walks like a cat'],
+  ['giraffe', 'cat', 'A cat that walks like a giraffe'],
   ['dog', 'giraffe', 'A giraffe that walks like a dog'],
-  ['person-small', 'robot', 'A robot that walks like a child'],
+  ['horse', 'dog', 'A dog that walks like a horse'],
 ];
 
 const SIGHTS = [
