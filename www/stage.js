@@ -23,6 +23,9 @@ const REACH = 8;
 /** Lines and pins in a picture of a size of its own are this many times as thick as one pixel to a pixel would make them. */
 const PICTURE_SCALE = 2;
 const PIN_STATES = { fixed: 0, proposed: 1, missing: 2 };
+/** Whether pictures are being changed because time goes on, as it always does: nobody waits for that. */
+let following = false;
+
 /** Where frames are slow: how long the picture must be still before it is drawn in full, in milliseconds. */
 const SETTLES = 350;
 const CALM = matchMedia('(prefers-reduced-motion: reduce)');
@@ -175,7 +178,9 @@ export class Stage extends EventTarget {
   #frame(now) {
     if (this.closing.signal.aborted) return;
     requestAnimationFrame((later) => this.#frame(later));
+    following = true;
     this.dispatchEvent(Object.assign(new Event('tick'), { now }));
+    following = false;
     if (!this.view || !this.visible) return;
     this.#flow(now);
     const underWay = this.view.under_way();
@@ -236,7 +241,7 @@ export class Stage extends EventTarget {
 
   /** Writes changes down and hands them on; a Viewport that cannot follow says why in a sentence. */
   #set(changes, act) {
-    this.wanted++;
+    if (!following) this.wanted++;
     this.#hand(changes, act);
   }
 
