@@ -50,7 +50,7 @@ export function writeLink(app, timeline, { own = false } = {}) {
   const { views } = app;
   for (const step of STEPS) if (step.views && views[step.id] && views[step.id] !== step.view && (step.id === app.step || !STEPS.find(({ id }) => id === app.step).views)) fields.view = views[step.id];
   const view = viewNow(app);
-  if (view && app.places[view.id] !== undefined) fields.at = app.place;
+  if (view && app.places[view.id] !== undefined) fields.at = app.places[view.id];
   if (view?.faces && app.face >= 0) fields.face = app.face;
   if (app.lessons) fields.lesson = 'open';
   if (app.guide?.tour) fields.tour = `${app.guide.tour.id}.${app.guide.stop}`;

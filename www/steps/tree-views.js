@@ -19,7 +19,7 @@ export function merged({ merges, rounds }, count) {
 const finestOf = ({ rounds }) => new Set(rounds.at(-1)).size;
 
 /** After how many merges there are as many parts as are shown. */
-const mergesNow = ({ result }) => Math.max(0, finestOf(result) - new Set(result.unsmoothed).size);
+const mergesNow = ({ result }) => (result ? Math.max(0, finestOf(result) - new Set(result.unsmoothed).size) : 0);
 
 const kept = new WeakMap();
 
@@ -40,7 +40,7 @@ export const merging = {
   title: 'The finest parts, merged one by one: always the two neighbours that cost least rigidity',
   name: 'Merge',
   needs: ({ result }) => result.merges.length > 0,
-  count: ({ result }) => result.merges.length + 1,
+  count: ({ result }) => (result?.merges.length ?? 0) + 1,
   first: mergesNow,
   where(app, index) {
     const cost = app.result.merges[index - 1]?.cost;

@@ -65,7 +65,7 @@ export const VIEWS = [
     label: 'Features',
     title: 'The feature faces in the order in which they were found, each with its region of influence (§3.2)',
     name: 'Feature',
-    count: ({ result }) => result.features.length,
+    count: ({ result }) => result?.features.length ?? 1,
     where: ({ result }, index) => (result.features[index]
       ? `${plural(result.features[index].region.length, 'face')} under its influence, partition ${result.features[index].partition + 1}` : 'none was found'),
     paint(app, index) {
@@ -86,8 +86,8 @@ export const VIEWS = [
     label: 'Clusters',
     title: 'The partitions after each round of clustering (§3.3)',
     name: 'Round',
-    count: ({ result }) => result.rounds.length,
-    first: ({ result }) => result.rounds.length - 1,
+    count: ({ result }) => result?.rounds.length ?? 1,
+    first: ({ result }) => (result?.rounds.length ?? 1) - 1,
     where: ({ result }, index) => (result.rounds[index] ? plural(new Set(result.rounds[index]).size, 'partition') : 'not needed'),
     paint: (app, index) => parts(app, app.result.rounds[index] ?? app.result.unsmoothed),
     legend: ({ result }) => ({
