@@ -5,18 +5,17 @@ use super::{Pair, TransferError};
 use crate::warning::Warning;
 use std::collections::BTreeMap;
 
-/// The pairs as places of the source and of the target, without repetitions; what was left out or is scarce goes to the
-/// warnings.
+/// The pairs without repetitions, their vertices within range; what was left out or is scarce goes to the warnings.
 pub fn checked(
     source: &Surface,
     target: &Surface,
     pairs: &[Pair],
     warnings: &mut Vec<Warning>,
-) -> Result<Vec<[u32; 2]>, TransferError> {
+) -> Result<Vec<Pair>, TransferError> {
     if pairs.is_empty() {
         return Err(TransferError::NoPairs);
     }
-    let mut kept: Vec<[u32; 2]> = Vec::with_capacity(pairs.len());
+    let mut kept: Vec<Pair> = Vec::with_capacity(pairs.len());
     let mut seen = [BTreeMap::new(), BTreeMap::new()];
     for (number, pair) in pairs.iter().enumerate() {
         let place = |side: &'static str, surface: &Surface, vertex: u32| match surface.place.get(vertex as usize) {
@@ -29,7 +28,7 @@ pub fn checked(
             [None, None] => {
                 seen[0].insert(places[0], number);
                 seen[1].insert(places[1], number);
-                kept.push(places);
+                kept.push(*pair);
             }
             [Some(first), Some(same)] if first == same => {
                 warnings.push(Warning::new(

@@ -2,6 +2,7 @@
 
 use super::alignment::{Alignment, align};
 use super::biharmonic::{self, carried};
+use super::checked::checked;
 use super::joints::Joints;
 use super::mend;
 use super::registration::{Effort, Foot, Ground, LOST, Pin, Registration, feet};
@@ -17,7 +18,6 @@ use crate::skinning::Fitter;
 use crate::warning::Warning;
 use crate::weights::{self, Biharmonic, Weights};
 use glam::{DAffine3, DVec3};
-use std::collections::BTreeMap;
 
 /// Rounds in which weights on a target of [`SMOOTHED`] vertices are averaged with their neighbours', and the most rounds on
 /// finer ones.
@@ -184,7 +184,7 @@ impl Prepared {
     fn run(&mut self, pairs: &[Pair], quick: bool, observer: &mut dyn Observer) -> Result<Transfer, TransferError> {
         let mut steps = Steps::new(observer);
         let mut warnings = self.warnings.clone();
-        let pairs = self.checked(pairs, &mut warnings)?;
+        let pairs = checked(&self.source, &self.target, pairs, &mut warnings)?;
         let points: Vec<(DVec3, DVec3)> = pairs.iter().map(|pair| self.points(pair)).collect();
         let alignment = align(&points);
         let skin = match self.parameters.method {
@@ -215,49 +215,6 @@ impl Prepared {
             warnings,
             seconds: steps.seconds,
         })
-    }
-
-    /// The pairs without repetitions.
-    fn checked(&self, pairs: &[Pair], warnings: &mut Vec<Warning>) -> Result<Vec<Pair>, TransferError> {
-        if pairs.is_empty() {
-            return Err(TransferError::NoPairs);
-        }
-        let mut kept: Vec<Pair> = Vec::with_capacity(pairs.len());
-        let mut seen = [BTreeMap::new(), BTreeMap::new()];
-        for (number, pair) in pairs.iter().enumerate() {
-            let place = |side: &'static str, surface: &Surface, vertex: u32| match surface.place.get(vertex as usize) {
-                Some(&place) => Ok(place),
-                None => Err(TransferError::OutOfRange { pair: number, side, vertex, vertices: surface.place.len() }),
-            };
-            let places = [place("source", &self.source, pair.source)?, place("target", &self.target, pair.target)?];
-            let before = [0, 1].map(|side| seen[side].get(&places[side]).copied());
-            match before {
-                [None, None] => {
-                    seen[0].insert(places[0], number);
-                    seen[1].insert(places[1], number);
-                    kept.push(*pair);
-                }
-                [Some(first), Some(same)] if first == same => {
-                    warnings.push(Warning::new(
-                        "repeated-pair",
-                        format!("pair {number} repeats pair {first} and was left out"),
-                    ));
-                }
-                [Some(first), _] => {
-                    return Err(TransferError::SamePlace { first, second: number, side: "source" });
-                }
-                [None, Some(first)] => {
-                    return Err(TransferError::SamePlace { first, second: number, side: "target" });
-                }
-            }
-        }
-        if kept.len() < 4 {
-            warnings.push(Warning::new(
-                "few-pairs",
-                format!("with {} only, much is guessed; about a dozen tell where everything is", count(kept.len())),
-            ));
-        }
-        Ok(kept)
     }
 
     fn points(&self, pair: &Pair) -> (DVec3, DVec3) {
@@ -404,8 +361,4 @@ fn splined(rest: &[DVec3], points: &[DVec3], pins: &[Pin]) -> Vec<DVec3> {
     let missing = |pin: &Pin| (rest[pin.vertex as usize], pin.point - points[pin.vertex as usize]);
     let spline = Spline::new(&pins.iter().map(missing).collect::<Vec<_>>());
     points.iter().zip(rest).map(|(&p, &r)| p + spline.at(r)).collect()
-}
-
-fn count(pairs: usize) -> String {
-    if pairs == 1 { "one pair".to_owned() } else { format!("{pairs} pairs") }
 }

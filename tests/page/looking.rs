@@ -7,7 +7,8 @@ use serde_json::Value;
 /// Seconds for what is to answer at once; an idle machine needs far less.
 const AT_ONCE: f64 = 1.5;
 
-const VIEWS: [&str; 11] = [
+/// The stages of the parts, in order.
+pub const VIEWS: [&str; 11] = [
     "gradients",
     "deformation",
     "dual",

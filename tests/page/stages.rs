@@ -1,6 +1,7 @@
 //! Stages, lessons and tours.
 
 use crate::harness::{Backend, Page, Screen};
+use crate::looking::VIEWS;
 use crate::opening::opened;
 use serde_json::{Value, json};
 
@@ -57,22 +58,9 @@ fn every_stage_is_walked_through_and_nothing_is_computed_again() {
     let mut page = opened(Backend::WebGl2, Screen::Small, SMALL);
     page.evaluate(WATCH);
     first(&mut page, "gradients");
-    let there = [
-        "gradients",
-        "deformation",
-        "dual",
-        "sets",
-        "distance",
-        "features",
-        "clusters",
-        "merging",
-        "unsmoothed",
-        "cut",
-        "parts",
-    ];
     let back =
         |list: &[&str]| list.iter().chain(list.iter().rev().skip(1)).map(|&view| view.to_owned()).collect::<Vec<_>>();
-    assert_eq!(walked(&mut page), back(&there));
+    assert_eq!(walked(&mut page), back(&VIEWS));
     assert_eq!(page.evaluate("window.asked"), 0, "the engine was asked");
     key_points(&mut page);
     page.evaluate("window.asked = 0");

@@ -128,7 +128,9 @@ impl Mover {
     pub fn transfer(&self, pairs: &[Pair], observer: &mut dyn Observer) -> Result<Moved, TransferError> {
         let mut steps = Steps::new(observer);
         let mut warnings = Vec::new();
-        let markers = checked(&self.source, &self.target, pairs, &mut warnings)?;
+        let pairs = checked(&self.source, &self.target, pairs, &mut warnings)?;
+        let places = |pair: &Pair| [self.source.place[pair.source as usize], self.target.place[pair.target as usize]];
+        let markers: Vec<[u32; 2]> = pairs.iter().map(places).collect();
         let place = |&vertex: &u32| self.target.place.get(vertex as usize).copied();
         let mut pins: Vec<u32> = self.parameters.pinned.iter().filter_map(place).collect();
         if pins.len() < self.parameters.pinned.len() {
