@@ -26,7 +26,7 @@ const ADDING: [usize; 2] = [20, 3];
 const REPLACING: [usize; 2] = [12, 2];
 
 /// The same when one is moved to a vertex at most so many edges away.
-const MOVING: [usize; 2] = [6, 1];
+const MOVING: [usize; 2] = [4, 1];
 const RINGS: usize = 2;
 
 /// A replacement must gain more than this share of the error…

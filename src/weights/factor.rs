@@ -12,7 +12,7 @@ use std::sync::Arc;
 const NONE: u32 = u32::MAX;
 
 /// Borders are kept up to this many, and up to a share of the set: beyond, a new factor is cheaper.
-const MOST_BORDERS: usize = 64;
+const MOST_BORDERS: usize = 24;
 const BORDERS_PER_MEMBER: usize = 16;
 
 /// A factor of Q on a set of vertices, and the borders computed with it so far.

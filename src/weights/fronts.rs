@@ -10,11 +10,9 @@ use super::factor::Solver;
 /// Rounds in neighbourhoods between two on the whole.
 const ROUNDS: usize = 40;
 
-/// A neighbourhood is everything within so many steps of Q, two edges each, of what was corrected.
-const REACH: usize = 1;
-
-/// Neighbourhoods with more than this share of the piece are no better than the whole.
-const SHARE: usize = 2;
+/// A neighbourhood is everything within so many steps of Q, two edges each, of what was corrected: wide enough for a front
+/// to move on by itself, which halves the rounds on the whole.
+const REACH: usize = 2;
 
 /// Corrects states near `corrected` vertices further.
 pub fn follow(problem: &mut Problem, column: &mut Column, mut corrected: Vec<u32>) {
@@ -28,9 +26,6 @@ pub fn follow(problem: &mut Problem, column: &mut Column, mut corrected: Vec<u32
             }
         }
         let window = around(problem, corrected, REACH);
-        if SHARE * window.len() > problem.members.len() {
-            return;
-        }
         measure(problem, column, &window);
         let free: Vec<u32> = window.iter().filter(|v| column.states[**v as usize] == State::Free).copied().collect();
         let Some(step) = solver.step(&free, &problem.forces) else { return };
