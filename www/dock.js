@@ -32,7 +32,20 @@ export function dock(host, app) {
   const showViews = () => {
     show(views, choice('View', available(app).map(({ id, label, title }) => [id, label, title]), app.view, choose, 'ribbon'));
   };
-  const reveal = () => views.querySelector(':checked')?.parentElement.scrollIntoView?.({ block: 'nearest', inline: 'center' });
+  const reveal = () => {
+    views.querySelector(':checked')?.parentElement.scrollIntoView?.({ block: 'nearest', inline: 'center' });
+    fade();
+  };
+  // On which sides there are more views than are seen.
+  const fade = () => {
+    const ribbon = views.firstChild;
+    if (!ribbon) return;
+    const more = [ribbon.scrollLeft > 1 && 'before', ribbon.scrollLeft + ribbon.clientWidth < ribbon.scrollWidth - 1 && 'after'].filter(Boolean);
+    if (more.length) ribbon.dataset.more = more.join(' ');
+    else delete ribbon.dataset.more;
+  };
+  views.addEventListener('scroll', fade, { capture: true, passive: true });
+  new ResizeObserver(fade).observe(views);
   const update = () => {
     const { hidden } = host;
     const step = stepNamed(app.step);
