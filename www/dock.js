@@ -92,7 +92,7 @@ function partsSlider(app) {
     update() {
       const { result } = app;
       const counts = result.curve.map(({ parts }) => parts);
-      const few = counts.length === 0;
+      const few = counts.length === 0 || !app.sequence.sizes.poses;
       control.element.hidden = few;
       words.hidden = !few;
       if (few) {
@@ -150,7 +150,7 @@ function whereNext(app) {
 }
 
 function whyNoChoice({ sequence, parameters, result }) {
-  if (sequence.sizes.poses === 0) return 'It has a single pose. Parts show only in how a thing moves.';
+  if (sequence.sizes.poses === 0) return 'It stands still, and parts show only in how a thing moves. Drop its poses here as well, or open it as a target.';
   if (parameters.method === 'paper') return `${plural(result.parts.length, 'part')}: by the letter of the paper, the method decides how many.`;
   return 'It moves as one: there is nothing to divide.';
 }

@@ -13,6 +13,13 @@ pub fn opened(backend: Backend, screen: Screen, tail: &str) -> Page {
     page
 }
 
+/// The same with nothing else open, for what measures time.
+pub fn opened_alone(backend: Backend, screen: Screen, tail: &str) -> Page {
+    let mut page = Page::open_alone(backend, screen, tail);
+    page.wait_until(SETTLED, 6.0 * FIRST_PICTURE);
+    page
+}
+
 /// Nothing runs and the paint is where it belongs.
 pub const SETTLED: &str =
     "sinew.ready && sinew.state().parts && !sinew.state().busy && !sinew.state().flowing && sinew.state().drawn";

@@ -396,7 +396,7 @@ impl Page {
 
 impl Drop for Page {
     fn drop(&mut self) {
-        println!("the page was open for {:.1} s", clock::seconds() - self.begun);
+        eprintln!("the page was open for {:.1} s", clock::seconds() - self.begun);
         if std::thread::panicking() {
             // The first failure is the one to report; the tab only has to go.
             let target = self.target.clone();
