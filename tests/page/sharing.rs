@@ -99,7 +99,7 @@ fn addresses_that_are_neither_https_nor_here_are_refused() {
 fn a_project_holds_the_visitors_own_files() {
     let mut page = opened(Backend::WebGl2, Screen::Small, "#v1;zoo=snake;faces=3000");
     page.drop_files(&[("hinge.glb", &glb::hinge(24))]);
-    page.wait_until("sinew.state().source.name.includes('hinge') && sinew.state().parts === 2", 10.0);
+    page.wait_until("sinew.state().source.name.includes('hinge') && sinew.state().parts === 2", 30.0);
     page.evaluate("sinew.app.setStep('keypoints')");
     page.wait_until("sinew.state().points > 1 && !sinew.state().busy", 30.0);
     page.evaluate("sinew.app.setStep('target')");

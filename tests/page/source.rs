@@ -7,7 +7,7 @@ fn a_dropped_file_is_painted(backend: Backend) {
     let mut page = Page::open(backend, Screen::Small, "");
     page.wait_until("sinew.ready && !sinew.state().busy", 20.0);
     page.drop_files(&[("hinge.glb", &glb::hinge(24))]);
-    page.wait_until("sinew.state().source.name.includes('hinge') && sinew.state().parts === 2", 10.0);
+    page.wait_until("sinew.state().source.name.includes('hinge') && sinew.state().parts === 2", 30.0);
     let state = page.state();
     assert_eq!(state["error"], serde_json::Value::Null, "{state}");
     assert_eq!(state["source"]["vertices"], 24 * 12 + 2, "{state}");
