@@ -33,7 +33,7 @@ fn main() {
     }
     for row in rows {
         println!(
-            "{:<48} {:>10.1} ms",
+            "{:<84} {:>10.1} ms",
             row["name"].as_str().unwrap_or("?"),
             row["milliseconds"].as_f64().unwrap_or(f64::NAN)
         );

@@ -477,7 +477,9 @@ export class App extends EventTarget {
 
   /** Tells the visitor something, calmly. */
   say(text, kind = 'error') {
-    this.notice = { text: text.charAt(0).toUpperCase() + text.slice(1), kind };
+    // A sentence begins with a capital, a file is called what it is called.
+    const named = /^\S+\.\w/.test(text);
+    this.notice = { text: named ? text : text.charAt(0).toUpperCase() + text.slice(1), kind };
     this.changed('notice');
   }
 

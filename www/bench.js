@@ -1,6 +1,9 @@
 /** The page's own benchmark: how long a visitor waits. */
 
 const RUNS = 3;
+/** The figures between which a point is dragged: about 5,000 vertices each. */
+const PAIR = { faces: 10_000, poses: 16 };
+const DRAGS = 15;
 
 /** @returns {Promise<{name: string, milliseconds: number}[]>} */
 export async function bench(app) {
@@ -14,7 +17,36 @@ export async function bench(app) {
     await app.engine.call('segment', { parameters: app.parameters });
     taken.push(performance.now() - start);
   }
-  taken.sort((a, b) => a - b);
-  results.push({ name: `segment ${name}, ${sizes.faces} faces × ${sizes.poses} poses`, milliseconds: taken[RUNS >> 1] });
-  return results;
+  results.push({ name: `segment ${name}, ${sizes.faces} faces × ${sizes.poses} poses`, milliseconds: median(taken) });
+  return results.concat(await dragged(app));
+}
+
+const median = (list) => [...list].sort((a, b) => a - b)[list.length >> 1];
+
+/** How long the motion takes to follow a point that is dragged over the target: in the engine, and until the page has it. */
+async function dragged(app) {
+  await app.openCreature({ name: 'horse', ...PAIR });
+  app.setStep('target');
+  await app.target.openTwin({ name: 'camel', ...PAIR });
+  while (!app.transfer.motion || app.busy) await new Promise((resolve) => setTimeout(resolve, 50));
+  const { faces, sizes } = app.target.sequence;
+  const corner = faces.indexOf(app.doc.points[0].target);
+  const engine = [];
+  const all = [];
+  app.held = true;
+  for (let i = 0; i < DRAGS; i++) {
+    const begun = performance.now();
+    const followed = new Promise((resolve) => app.addEventListener('motion', resolve, { once: true }));
+    app.target.place(0, faces[corner - (corner % 3) + (i % 3)], 'drag');
+    await followed;
+    engine.push(app.transfer.motion.took * 1000);
+    all.push(performance.now() - begun);
+  }
+  app.held = false;
+  app.history.rest();
+  const what = `a dragged point of ${app.doc.count}, ${sizes.vertices} vertices × ${app.sequence.sizes.poses} poses`;
+  return [
+    { name: `${what}: engine`, milliseconds: median(engine) },
+    { name: `${what}: until the page has it`, milliseconds: median(all) },
+  ];
 }

@@ -32,7 +32,20 @@ export function dock(host, app) {
   const showViews = () => {
     show(views, choice('View', available(app).map(({ id, label, title }) => [id, label, title]), app.view, choose, 'ribbon'));
   };
-  const reveal = () => views.querySelector(':checked')?.parentElement.scrollIntoView?.({ block: 'nearest', inline: 'center' });
+  const reveal = () => {
+    views.querySelector(':checked')?.parentElement.scrollIntoView?.({ block: 'nearest', inline: 'center' });
+    fade();
+  };
+  // On which sides there are more views than are seen.
+  const fade = () => {
+    const ribbon = views.firstChild;
+    if (!ribbon) return;
+    const more = [ribbon.scrollLeft > 1 && 'before', ribbon.scrollLeft + ribbon.clientWidth < ribbon.scrollWidth - 1 && 'after'].filter(Boolean);
+    if (more.length) ribbon.dataset.more = more.join(' ');
+    else delete ribbon.dataset.more;
+  };
+  views.addEventListener('scroll', fade, { capture: true, passive: true });
+  new ResizeObserver(fade).observe(views);
   const update = () => {
     const { hidden } = host;
     const step = stepNamed(app.step);
@@ -79,7 +92,7 @@ function partsSlider(app) {
     update() {
       const { result } = app;
       const counts = result.curve.map(({ parts }) => parts);
-      const few = counts.length === 0;
+      const few = counts.length === 0 || !app.sequence.sizes.poses;
       control.element.hidden = few;
       words.hidden = !few;
       if (few) {
@@ -137,7 +150,7 @@ function whereNext(app) {
 }
 
 function whyNoChoice({ sequence, parameters, result }) {
-  if (sequence.sizes.poses === 0) return 'It has a single pose. Parts show only in how a thing moves.';
+  if (sequence.sizes.poses === 0) return 'It stands still, and parts show only in how a thing moves. Drop its poses here as well, or open it as a target.';
   if (parameters.method === 'paper') return `${plural(result.parts.length, 'part')}: by the letter of the paper, the method decides how many.`;
   return 'It moves as one: there is nothing to divide.';
 }

@@ -5,6 +5,10 @@ const MOST_BYTES = 1 << 30;
 /** What a link may bring, in bytes. */
 const MOST_DOWNLOAD = 256 << 20;
 
+/** What is often dropped in vain, and where it is made. */
+const FOREIGN = /\.(fbx|blend|dae|usd[acz]?|3ds|max|ma|mb|c4d|bvh|abc|x3d|vrm|pmx)$/i;
+const READABLE = /\.(glb|gltf|obj|off|ply|stl|zip)$/i;
+
 const megabytes = (bytes) => `${Math.round(bytes / (1 << 20))} MB`;
 
 /**
@@ -14,9 +18,21 @@ const megabytes = (bytes) => `${Math.round(bytes / (1 << 20))} MB`;
  * @param {{name: string, blob: Blob}[]} [still] what was open before, if its poses may be among the files
  */
 export async function collect(files, options, still) {
+  refuse(files);
   const total = [...files, ...(still ?? [])].reduce((sum, { blob }) => sum + blob.size, 0);
   if (total > MOST_BYTES) throw new Error(`These files have ${megabytes(total)}; Sinew opens up to ${megabytes(MOST_BYTES)}.`);
   return { files: await readAll(files), options, ...(still && { still: await readAll(still) }) };
+}
+
+/** Says at once what the engine would have to guess: a file of another kind, or none at all. */
+function refuse(files) {
+  if (!files.length) throw new Error('There is no file in that folder.');
+  const empty = files.find(({ name, blob }) => READABLE.test(name) && !blob.size);
+  if (empty) throw new Error(`“${empty.name}” is empty.`);
+  const foreign = files.find(({ name }) => FOREIGN.test(name));
+  if (foreign && !files.some(({ name }) => READABLE.test(name))) {
+    throw new Error(`“${foreign.name}” cannot be read here. Export it as glTF (.glb) from the program that made it; Blender opens and writes most kinds.`);
+  }
 }
 
 const readAll = (files) => Promise.all(files.map(async ({ name, blob }) => {

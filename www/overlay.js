@@ -11,7 +11,7 @@ import { viewNow } from './stages.js';
 /** @param {import('./app.js').App} app @param {HTMLElement} host of the picture */
 export function overlay(app, host) {
   const layer = svg('svg', { class: 'overlay', 'aria-hidden': 'true' },
-    svg('defs', {}, svg('marker', { id: 'overlay-head', viewBox: '0 0 8 8', refX: 7, refY: 4, markerWidth: 7, markerHeight: 7, orient: 'auto-start-reverse' },
+    svg('defs', {}, svg('marker', { id: 'overlay-head', viewBox: '0 0 8 8', refX: 7, refY: 4, markerWidth: 4, markerHeight: 4, orient: 'auto-start-reverse' },
       svg('path', { d: 'M0 0.5 8 4 0 7.5z', fill: 'context-stroke' }))));
   const group = svg('g');
   layer.append(group);

@@ -45,7 +45,7 @@ export function share(sheet, app, timeline) {
       said.textContent = 'The browser did not let the page copy. It is in the field above: copy it from there.';
     }
   };
-  const button = (id, text, click) => h('button', { type: 'button', class: 'chip-button', id, on: { click } }, text);
+  const button = (id, text, click, kind = 'chip-button') => h('button', { type: 'button', class: kind, id, on: { click } }, text);
   const project = async () => {
     said.textContent = 'Writing …';
     const blob = await writeProject(app, timeline);
@@ -57,12 +57,12 @@ export function share(sheet, app, timeline) {
     h('div', {}, h('label', { for: 'share-link', class: 'small faint' }, 'A link to exactly this'), field),
     left && h('p', { class: 'warning' }, left),
     h('div', { class: 'actions' },
-      button('copy-link', 'Copy link', copy(() => addressOf(app, timeline), 'Link copied.')),
+      button('copy-link', 'Copy link', copy(() => addressOf(app, timeline), 'Link copied.'), 'chip-button first'),
       button('copy-embed', 'Copy frame with controls', copy(() => embedCode(app, timeline, 'controls'), 'Code copied: paste it into a page.')),
       button('copy-bare', 'Copy frame, picture only', copy(() => embedCode(app, timeline, 'bare'), 'Code copied: paste it into a page.'))),
     h('div', {}, h('p', { class: 'small faint' }, 'Everything as one file: your figures, the points, what you look at.'),
       h('div', { class: 'actions' }, button('save-project', 'Save project as GLB', project))),
     said,
-    h('button', { type: 'button', class: 'button', on: { click: () => sheet.close() } }, 'Close'));
+    h('button', { type: 'button', class: 'chip-button', on: { click: () => sheet.close() } }, 'Close'));
   sheet.showModal();
 }

@@ -139,7 +139,7 @@ export class Timeline {
     }
     this.still.setAttribute('aria-pressed', String(still));
     const pose = Math.min(this.poses - 1, Math.round(shown)) % (this.poses || 1);
-    const text = still ? 'reference' : `${pose + 1} / ${this.poses}`;
+    const text = still ? `– / ${this.poses}` : `${pose + 1} / ${this.poses}`;
     if (this.words.textContent !== text) this.words.textContent = text;
     this.range.setAttribute('aria-valuetext', still ? 'reference pose' : `pose ${pose + 1} of ${this.poses}`);
   }

@@ -100,6 +100,6 @@ export function openTours(sheet, guide) {
       if (!guide.app.panel) guide.app.setPanel(true);
       guide.begin(id);
     } } }, h('span', {}, title), h('span', { class: 'small faint' }, `${about} ${stops.length} stops.`))))),
-    h('button', { type: 'button', class: 'button', on: { click: () => sheet.close() } }, 'Close'));
+    h('button', { type: 'button', class: 'chip-button', on: { click: () => sheet.close() } }, 'Close'));
   sheet.showModal();
 }

@@ -7,6 +7,9 @@ const FRAMES = 30;
 const BITS = 8_000_000;
 /** A longer motion is not recorded beyond this, in seconds. */
 const LONGEST = 30;
+/** Where the graphics are slow, so many pictures are waited for, but not longer than this beyond the end, in milliseconds. */
+const FEWEST = 3;
+const GRACE = 15_000;
 
 /** The kind of video that this browser writes; undefined if it writes none. */
 export const videoType = () => (globalThis.MediaRecorder && HTMLCanvasElement.prototype.captureStream ? TYPES.find((type) => MediaRecorder.isTypeSupported(type)) : undefined);
@@ -21,6 +24,8 @@ export const videoType = () => (globalThis.MediaRecorder && HTMLCanvasElement.pr
 export async function recordLoop(stage, timeline, progress, signal) {
   const type = videoType();
   if (!type || !stage.view) throw new Error('This browser cannot record the picture as a video.');
+  if (!(timeline.seconds.at(-1) > 0)) throw new Error('It stands still: there is no motion to record.');
+  const { time: before, playing, reference } = timeline;
   const stream = stage.canvas.captureStream(FRAMES);
   const recorder = new MediaRecorder(stream, { mimeType: type, videoBitsPerSecond: BITS });
   const pieces = [];
@@ -35,14 +40,27 @@ export async function recordLoop(stage, timeline, progress, signal) {
   timeline.setPlaying(true);
   const begun = performance.now();
   const watch = setInterval(() => progress(Math.min(1, (performance.now() - begun) / length)), 200);
+  let pictures = 0;
+  const count = () => pictures++;
+  stage.addEventListener('drawn', count);
   await new Promise((resolve) => {
-    setTimeout(resolve, length);
+    const end = () => {
+      const over = performance.now() - begun - length;
+      if (pictures >= FEWEST || over > GRACE) resolve();
+      else setTimeout(end, 100);
+    };
+    setTimeout(end, length);
     signal?.addEventListener('abort', resolve);
   });
+  stage.removeEventListener('drawn', count);
   clearInterval(watch);
   recorder.stop();
   await stopped;
   for (const track of stream.getTracks()) track.stop();
+  // The visitor goes on where they were.
+  timeline.seek(before);
+  if (reference) timeline.toggleReference();
+  timeline.setPlaying(playing);
   if (signal?.aborted) throw new Cancelled('Cancelled.');
   if (!pieces.length) throw new Error('The recording came out empty.');
   return { blob: new Blob(pieces, { type }), extension: type.includes('mp4') ? 'mp4' : 'webm' };

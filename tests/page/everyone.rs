@@ -1,7 +1,7 @@
 //! The page for everyone: with a keyboard and a screen reader, without a network, after something broke.
 
 use crate::harness::{Backend, Page, Screen};
-use crate::opening::{SETTLED, opened};
+use crate::opening::{SETTLED, opened, opened_alone};
 use serde_json::{Value, json};
 use std::io::{Read, Write};
 use std::net::{Shutdown, TcpListener, TcpStream};
@@ -191,7 +191,7 @@ fn the_policy_is_kept_all_the_way() {
 #[test]
 #[ignore = "drives the built page in Chromium: run by `cargo xtask test`"]
 fn the_page_is_never_held_up_while_a_job_runs() {
-    let mut page = opened(Backend::WebGl2, Screen::Small, "#v1;zoo=horse;faces=12000;t=reference");
+    let mut page = opened_alone(Backend::WebGl2, Screen::Small, "#v1;zoo=horse;faces=12000;t=reference");
     page.rest(1.0);
     page.evaluate("window.long = []; new PerformanceObserver((list) => long.push(...list.getEntries().map(({ duration }) => Math.round(duration)))).observe({ type: 'longtask' }); undefined");
     page.evaluate("void sinew.app.keypoints.find()");

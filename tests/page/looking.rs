@@ -1,7 +1,7 @@
 //! What a visitor does with a creature that is open.
 
 use crate::harness::{Backend, Page, Screen};
-use crate::opening::{SETTLED, opened};
+use crate::opening::{SETTLED, opened, opened_alone};
 use serde_json::Value;
 
 /// Seconds for what is to answer at once; an idle machine needs far less.
@@ -107,7 +107,7 @@ fn keys_do_what_the_sheet_says() {
 #[test]
 #[ignore = "drives the built page in Chromium: run by `cargo xtask test`"]
 fn long_work_is_cancelled_at_once_and_nothing_is_lost() {
-    let mut page = opened(Backend::WebGl2, Screen::Small, "");
+    let mut page = opened_alone(Backend::WebGl2, Screen::Small, "");
     let before = page.state();
     // All pairs of faces: this runs for minutes.
     page.evaluate("document.querySelector('#control-exact-distances').closest('details').open = true");

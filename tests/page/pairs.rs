@@ -1,7 +1,7 @@
 //! Key points, a target, and how it moves.
 
 use crate::harness::{Backend, Page, Screen};
-use crate::opening::opened;
+use crate::opening::{opened, opened_alone};
 use serde_json::Value;
 
 /// Seconds for the selection of key points and the rest of a transfer on a busy machine.
@@ -19,7 +19,11 @@ pub fn proposed(backend: Backend, screen: Screen) -> Page {
     step(&mut page, "keypoints");
     page.wait_until("sinew.state().points > 2 && !sinew.state().busy", PATIENT);
     step(&mut page, "target");
-    page.click("#target-camel");
+    // With as few faces as the source; on one of the two backends as a visitor opens it.
+    match backend {
+        Backend::WebGpu => page.click("#target-camel"),
+        Backend::WebGl2 => drop(page.evaluate("void sinew.app.target.openCreature({ name: 'camel', faces: 3000 })")),
+    }
     page.wait_until(&format!("sinew.state().moves && sinew.state().tally.missing === 0 && {IDLE}"), PATIENT);
     page
 }
@@ -81,6 +85,22 @@ fn a_camel_walks_like_a_horse_on_webgpu() {
 fn a_camel_walks_like_a_horse_on_webgl2() {
     a_camel_walks_like_a_horse(Backend::WebGl2);
 }
+
+/// How much slower than on an idle machine of these days it may be before a test fails.
+const SLOWER: f64 = 3.0;
+
+/// Drags the first point of the target from corner to corner of the faces around it; the median milliseconds that the engine
+/// took, and until the page had the motion.
+const DRAG: &str = "(async () => { const { app } = sinew; app.held = true; const taken = [];
+    const near = app.target.sequence.faces, start = near.indexOf(app.doc.points[0].target);
+    for (let i = 0; i < 12; i++) {
+      const begun = performance.now();
+      app.target.place(0, near[start - start % 3 + i % 3], 'drag');
+      await new Promise((resolve) => app.addEventListener('motion', resolve, { once: true }));
+      taken.push([app.transfer.motion.took * 1000, performance.now() - begun]);
+    }
+    app.held = false; app.history.rest();
+    return [0, 1].map((k) => taken.map((each) => each[k]).sort((a, b) => a - b)[6]); })()";
 
 /// Everything that undo brings back.
 const DOCUMENT: &str = "JSON.stringify([sinew.app.doc.points, sinew.app.doc.count, sinew.app.doc.method,
@@ -146,18 +166,28 @@ fn a_point_is_dragged_and_the_motion_follows() {
     page.press_with_control("z");
     page.wait_until("!sinew.state().busy", PATIENT);
     assert_eq!(page.evaluate(&vertex), before, "Ctrl+Z brings it back");
-    let milliseconds = page.evaluate_within(
-        "(async () => { const { app } = sinew; app.held = true; const times = [];
-        const near = app.target.sequence.faces; const start = near.indexOf(app.doc.points[0].target);
-        for (let i = 0; i < 6; i++) {
-          app.target.place(0, near[(start - start % 3) + i % 3], 'drag');
-          await new Promise((resolve) => app.addEventListener('motion', resolve, { once: true }));
-          times.push(app.transfer.motion.took * 1000);
-        }
-        app.held = false; app.history.rest(); return times.sort((a, b) => a - b)[3]; })()",
-        PATIENT,
+}
+
+/// Milliseconds from a point being moved on a target of some 5,000 vertices to the picture that follows it.
+pub const FOLLOWS: f64 = 100.0;
+
+#[test]
+#[ignore = "drives the built page in Chromium: run by `cargo xtask test`"]
+fn a_target_of_5000_vertices_follows_the_hand() {
+    let mut page = opened_alone(Backend::WebGl2, Screen::Small, "#v1;zoo=horse;faces=10000;poses=16;k.points=12");
+    step(&mut page, "keypoints");
+    page.wait_until("sinew.state().points > 2 && !sinew.state().busy", PATIENT);
+    step(&mut page, "target");
+    page.evaluate("void sinew.app.target.openCreature({ name: 'camel', faces: 10000 })");
+    page.wait_until(&format!("sinew.state().moves && sinew.state().tally.missing === 0 && {IDLE}"), PATIENT);
+    let measured = page.evaluate_within(DRAG, PATIENT);
+    let [engine, all] = [0, 1].map(|i| measured[i].as_f64().unwrap_or(f64::INFINITY));
+    println!(
+        "a dragged point, {} pairs, {} vertices: the engine takes {engine:.0} ms, the motion is there after {all:.0} ms",
+        page.state()["points"],
+        page.state()["target"]["vertices"],
     );
-    println!("the motion follows a dragged point after {milliseconds} ms");
+    assert!(all <= FOLLOWS * SLOWER, "{all} ms");
 }
 
 #[test]
@@ -198,7 +228,8 @@ fn a_cancel_costs_one_step() {
 #[test]
 #[ignore = "drives the built page in Chromium: run by `cargo xtask test`"]
 fn the_gallery_opens_pairs_that_move() {
-    let mut page = opened(Backend::WebGl2, Screen::Small, "");
+    let mut page = opened(Backend::WebGl2, Screen::Small, "#v1;zoo=snake;faces=3000");
+    page.evaluate("Object.assign(sinew.app.about.recipe, { faces: 4000, poses: 12 }); undefined");
     for (source, target) in [("snake", "hand"), ("person", "dinosaur"), ("horse", "camel")] {
         page.evaluate(&format!("document.querySelector('#pair-{source}-{target}').click()"));
         let open = format!("sinew.state().target?.name === '{target}' && sinew.state().source.name === '{source}'");

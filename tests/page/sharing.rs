@@ -99,7 +99,7 @@ fn addresses_that_are_neither_https_nor_here_are_refused() {
 fn a_project_holds_the_visitors_own_files() {
     let mut page = opened(Backend::WebGl2, Screen::Small, "#v1;zoo=snake;faces=3000");
     page.drop_files(&[("hinge.glb", &glb::hinge(24))]);
-    page.wait_until("sinew.state().source.name.includes('hinge') && sinew.state().parts === 2", 10.0);
+    page.wait_until("sinew.state().source.name.includes('hinge') && sinew.state().parts === 2", 30.0);
     page.evaluate("sinew.app.setStep('keypoints')");
     page.wait_until("sinew.state().points > 1 && !sinew.state().busy", 30.0);
     page.evaluate("sinew.app.setStep('target')");
@@ -166,4 +166,35 @@ fn what_is_taken_away_comes_back() {
     page.wait_until(&format!("sinew.state().source.name.includes('rigid') && {SETTLED}"), 30.0);
     let again = page.state();
     assert!(again["residual"].as_f64().is_some_and(|again| again < residual + 1e-4), "a rigid skin is rigid: {again}");
+}
+
+#[test]
+#[ignore = "drives the built page in Chromium: run by `cargo xtask test`"]
+fn a_video_is_recorded_or_cancelled() {
+    let mut page = opened(Backend::WebGl2, Screen::Small, "#v1;zoo=snake;faces=3000;poses=24;t=2");
+    // What the page hands to the browser to keep.
+    page.evaluate(
+        "window.kept = []; HTMLAnchorElement.prototype.click = function () { kept.push(this.download); }; undefined",
+    );
+    page.evaluate("sinew.app.setStep('export'); document.querySelector('#export-video').click()");
+    page.wait_until(
+        "sinew.app.busy?.lane === 'video' && sinew.state().playing && !document.querySelector('#progress').hidden",
+        10.0,
+    );
+    page.click("#progress button");
+    page.wait_until("!sinew.state().busy && !sinew.app.recording", 5.0);
+    let state = page.state();
+    assert_eq!(
+        (&state["error"], &state["playing"], &state["time"]),
+        (&Value::Null, &json!(false), &json!(2)),
+        "{state}"
+    );
+    assert_eq!(page.evaluate("kept"), json!([]), "what was cancelled is not saved");
+    // Slowly: software may take half a second to draw a picture.
+    page.evaluate("sinew.app.timeline.speed = 0.25; document.querySelector('#export-video').click()");
+    page.wait_until("kept.length === 1 && !sinew.state().busy", 60.0);
+    let name = page.evaluate("kept[0]");
+    assert!(name.as_str().is_some_and(|name| name.ends_with(".webm")), "{name}");
+    let state = page.state();
+    assert_eq!((&state["playing"], &state["time"]), (&json!(false), &json!(2)), "one goes on where one was: {state}");
 }

@@ -7,7 +7,7 @@ fn a_dropped_file_is_painted(backend: Backend) {
     let mut page = Page::open(backend, Screen::Small, "");
     page.wait_until("sinew.ready && !sinew.state().busy", 20.0);
     page.drop_files(&[("hinge.glb", &glb::hinge(24))]);
-    page.wait_until("sinew.state().source.name.includes('hinge') && sinew.state().parts === 2", 10.0);
+    page.wait_until("sinew.state().source.name.includes('hinge') && sinew.state().parts === 2", 30.0);
     let state = page.state();
     assert_eq!(state["error"], serde_json::Value::Null, "{state}");
     assert_eq!(state["source"]["vertices"], 24 * 12 + 2, "{state}");
@@ -44,6 +44,59 @@ fn a_bad_file_is_refused_in_words_and_nothing_is_lost() {
     assert!(after["error"].as_str().is_some_and(|error| error.len() > 20), "{after}");
     assert_eq!(after["source"], before["source"], "what was open stays open");
     assert_eq!(after["parts"], before["parts"], "what was painted stays painted");
+}
+
+#[test]
+#[ignore = "drives the built page in Chromium: run by `cargo xtask test`"]
+fn what_cannot_be_opened_is_called_by_its_name() {
+    let mut page = Page::open(Backend::WebGl2, Screen::Small, "#v1;zoo=snake;faces=3000");
+    page.wait_until(SETTLED, 30.0);
+    let files: [(&str, &[u8], &str); 4] = [
+        ("hero.fbx", b"Kaydara FBX Binary  ", "Export it as glTF"),
+        ("hero.glb", b"", "is empty"),
+        ("notes.txt", b"nothing to see", "notes.txt is no glTF"),
+        ("cut.glb", &glb::hinge(24)[..2000], "cut.glb is cut short"),
+    ];
+    for (name, bytes, said) in files {
+        page.drop_files(&[(name, bytes)]);
+        page.wait_until(&format!("sinew.state().error?.includes('{said}') && !sinew.state().busy"), 10.0);
+        page.evaluate("sinew.app.dismiss()");
+        assert_eq!(page.state()["source"]["name"], "snake");
+    }
+}
+
+#[test]
+#[ignore = "drives the built page in Chromium: run by `cargo xtask test`"]
+fn a_full_memory_ends_in_a_sentence() {
+    let mut page = Page::open(Backend::WebGl2, Screen::Small, "#v1;zoo=snake;faces=3000");
+    page.wait_until(SETTLED, 30.0);
+    let before = page.state();
+    // More poses than could be held: refused before it is tried.
+    page.drop_files(&[("hinge.glb", &glb::hinge(1500))]);
+    page.wait_until("sinew.state().source.name.includes('hinge') && sinew.state().parts && !sinew.state().busy", 60.0);
+    let opened = page.state();
+    assert_ne!(opened["source"], before["source"]);
+    page.evaluate_within("sinew.app.reopen({ sampling: { rate: 6000 } }).then(() => 0)", 60.0);
+    let error = page.state()["error"].to_string();
+    assert!(error.contains("12003 poses") && error.contains("take fewer poses"), "{error}");
+    // What no estimate foresees: more bytes than a wasm module can have. The page itself would not let them through.
+    page.expect_problem("The worker broke");
+    page.evaluate_within(
+        "(() => { const files = ['a', 'b', 'c'].map((name) => ({ name: `${name}.obj`, bytes: new Uint8Array(1.5 * 2 ** 30) }));
+        return sinew.app.work.run('source', 'reading', () => sinew.app.engine.call('open',
+            { files, options: sinew.app.about.options }, { transfer: files.map(({ bytes }) => bytes.buffer) })).then(() => 0); })()",
+        120.0,
+    );
+    let after = page.state();
+    let error = after["error"].to_string();
+    println!("a full memory: {error}");
+    assert!(error.contains("ran out of memory") && error.contains("nothing that was open is lost"), "{error}");
+    for what in ["source", "parts", "residual", "step", "view"] {
+        assert_eq!(after[what], opened[what], "{what}");
+    }
+    page.evaluate("sinew.app.dismiss()");
+    page.evaluate("void sinew.app.setParts(4)");
+    page.wait_until("sinew.state().parts === 4 && !sinew.state().busy && !sinew.state().error", 30.0);
 }
 
 /// A closed box of 3 × 3 × 3 squares a side that bends, with a hole of one square, a face that is there twice, a face

@@ -10,7 +10,7 @@ const MOST_FACES = 120_000;
 /** So many faces of the graph are drawn around the one that is looked at. */
 const NEIGHBOURHOOD = 70;
 /** Length of an arrow, over the diagonal. */
-const ARROW = 0.07;
+const ARROW = 0.1;
 /** Colours of the three axes of a face's frame, told apart by every eye. */
 export const AXES = ['#c2452d', '#0b7285', '#7a5195'];
 /** Weights of dual edges are shown over this range, in averages: from the least to what is surely deformable. */

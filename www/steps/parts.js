@@ -48,6 +48,8 @@ function build(app) {
 }
 
 function curvePlot(app) {
+  // What stands still loses nothing.
+  if (!app.sequence.sizes.poses) return [];
   const { curve, parts } = app.result;
   const plot = costCurve(curve, parts.length, (count) => app.setParts(count), 'Cost of losing a part, by number of parts');
   return plot ? [h('h3', {}, 'What one part less costs'), plot,

@@ -32,7 +32,7 @@ function build(app) {
   const acceptAll = h('button', { type: 'button', class: 'button', title: 'Accept all proposals (A)', on: { click: () => app.target.acceptAll() } }, 'Accept all');
   const again = h('button', { type: 'button', class: 'text-button', on: { click: () => app.target.proposeAgain() } }, 'Propose again');
   const words = h('p', { class: 'small faint' });
-  const tally = h('p', { class: 'small number' });
+  const tally = h('p', { class: 'small number note' });
   show(pairs, h('h3', {}, 'Points'), words, tally, h('div', { class: 'actions first' }, acceptAll, again), list);
   const creatures = h('div', { class: 'chips' });
   const update = () => {

@@ -28,7 +28,7 @@ function build(app) {
   const words = h('p', { class: 'small faint' });
   const go = h('button', { type: 'button', class: 'button', on: { click: () => app.setStep(app.doc.count ? 'target' : 'keypoints') } });
   const method = choice('Variant', METHODS, null, (value) => app.transfer.setMethod(value), 'stacked');
-  const about = h('p', { class: 'small faint' });
+  const about = h('p', { class: 'small faint said' });
   const numbers = h('div');
   const noticed = h('div', { class: 'stack' });
   const beside = h('div');

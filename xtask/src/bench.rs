@@ -11,7 +11,8 @@ pub fn bench(page: bool, passed_on: &[String]) -> Result<()> {
         let browser = setup::browser()?;
         bundle::build(false)?;
         let server = Server::bind(&bundle::folder(), "/", [0])?;
-        cargo.args(["--bench", "page"]);
+        // What is measured is the page. The program that drives it is that of the tests: nothing is compiled twice.
+        cargo.args(["--bench", "page", "--profile", "dev"]);
         cargo.env("SINEW_PAGE", server.run_behind()?).env("CHROMIUM", browser.chromium);
     } else {
         cargo.arg("--benches");

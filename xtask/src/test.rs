@@ -161,10 +161,11 @@ fn build() -> Result<Tally> {
     Ok(Tally { passed: 1, ..Tally::default() })
 }
 
-/// The page is served from deep inside a host, so that an address that is not relative is found out.
+/// The page is served from deep inside a host, so that an address that is not relative is found out. As many tests run
+/// at a time as there are cores; those that measure time see to it that they run alone.
 fn test_page() -> Result<Tally> {
     let server = Server::bind(&bundle::folder(), "/some/where/", [0])?;
-    let mut cargo = shell::cargo(["test", "--test", "page", "--", "--ignored", "--test-threads", "1", "--show-output"]);
+    let mut cargo = shell::cargo(["test", "--test", "page", "--", "--ignored", "--show-output"]);
     cargo.env("SINEW_PAGE", server.run_behind()?).env("CHROMIUM", setup::browser()?.chromium);
     let players = setup::players();
     match &players {

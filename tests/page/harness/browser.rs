@@ -7,7 +7,7 @@ use std::io::{BufRead, BufReader, Write};
 use std::path::{Path, PathBuf};
 use std::process::{Child, ChildStdin, Command, Stdio};
 use std::sync::mpsc::{Receiver, RecvTimeoutError, channel};
-use std::sync::{Mutex, MutexGuard, PoisonError};
+use std::sync::{Mutex, MutexGuard, PoisonError, RwLock, RwLockReadGuard, RwLockWriteGuard, TryLockError};
 use std::time::Duration;
 
 /// Seconds to wait for the answer to anything that should be answered at once.
@@ -30,26 +30,68 @@ impl Backend {
             Self::WebGl2 => "webgl2",
         }
     }
+}
 
-    /// The browser of this backend, started if it is not running. Held until the guard goes.
-    pub fn browser(self) -> MutexGuard<'static, Browsers> {
-        static BROWSERS: Mutex<Browsers> = Mutex::new(Browsers([None, None]));
-        // A test that failed while it held a browser closed its tab on the way out.
-        let mut browsers = BROWSERS.lock().unwrap_or_else(PoisonError::into_inner);
-        if browsers.0[self as usize].is_none() {
-            browsers.0[self as usize] = Some(Browser::start(self));
-        }
-        browsers
+/// How many pages may be open at a time. Each has browsers of its own, so that nothing is shared but the machine.
+const PLACES: usize = 4;
+
+/// Held by everything that is open; one who wants the machine alone holds it against all others.
+static MACHINE: RwLock<()> = RwLock::new(());
+
+/// A place in which one page can be open at a time, and its browsers, one for each backend, once started.
+pub struct Place {
+    number: usize,
+    browsers: [Option<Browser>; 2],
+}
+
+impl Place {
+    /// The browser of a backend, started if it is not running.
+    pub fn browser(&mut self, backend: Backend) -> &mut Browser {
+        self.browsers[backend as usize].get_or_insert_with(|| Browser::start(backend, self.number))
+    }
+
+    /// Another for every place, for the names of folders.
+    pub fn number(&self) -> usize {
+        self.number
     }
 }
 
-/// One browser for each backend, once started.
-pub struct Browsers([Option<Browser>; 2]);
+/// A place for as long as this is kept. The place goes back before the machine does.
+pub struct Lease {
+    /// The place.
+    pub place: MutexGuard<'static, Place>,
+    _others: Others,
+}
 
-impl Browsers {
-    /// A browser that was started.
-    pub fn get(&mut self, backend: Backend) -> &mut Browser {
-        self.0[backend as usize].as_mut().expect("the browser of this backend is running")
+/// What others may do meanwhile.
+enum Others {
+    Run { _guard: RwLockReadGuard<'static, ()> },
+    Wait { _guard: RwLockWriteGuard<'static, ()> },
+}
+
+impl Lease {
+    /// Waits for a free place; `alone` also until nothing else is open, and keeps it so: for what measures time.
+    pub fn take(alone: bool) -> Self {
+        static ALL: [Mutex<Place>; PLACES] =
+            [const { Mutex::new(Place { number: 0, browsers: [None, None] }) }; PLACES];
+        // A test that failed while it held a place closed its tab on the way out.
+        let others = if alone {
+            Others::Wait { _guard: MACHINE.write().unwrap_or_else(PoisonError::into_inner) }
+        } else {
+            Others::Run { _guard: MACHINE.read().unwrap_or_else(PoisonError::into_inner) }
+        };
+        loop {
+            for (number, place) in ALL.iter().enumerate() {
+                let mut place = match place.try_lock() {
+                    Ok(place) => place,
+                    Err(TryLockError::Poisoned(place)) => place.into_inner(),
+                    Err(TryLockError::WouldBlock) => continue,
+                };
+                place.number = number;
+                return Self { place, _others: others };
+            }
+            std::thread::sleep(Duration::from_millis(20));
+        }
     }
 }
 
@@ -96,8 +138,8 @@ const WEBGPU: &[&str] = &[
 const WEBGL2: &[&str] = &["--enable-unsafe-swiftshader", "--use-angle=swiftshader", "--disable-features=WebGPUService"];
 
 impl Browser {
-    fn start(backend: Backend) -> Self {
-        let profile = fresh_profile(backend);
+    fn start(backend: Backend, place: usize) -> Self {
+        let profile = fresh_profile(backend, place);
         // The browser reads its protocol from descriptor 3 and writes it to 4; the shell puts our pipe there.
         let mut command = Command::new("sh");
         command.args(["-c", r#"exec "$0" "$@" 3<&0 4>&1 </dev/null >/dev/null"#]).arg(program());
@@ -216,9 +258,9 @@ impl Browser {
 
 /// An empty folder for what the browser keeps. Those of runs before are removed; a browser of theirs that is still
 /// on its way out has a folder of its own.
-fn fresh_profile(backend: Backend) -> PathBuf {
+fn fresh_profile(backend: Backend, place: usize) -> PathBuf {
     let scratch = Path::new(env!("CARGO_TARGET_TMPDIR"));
-    let start = format!("chromium-{}-", backend.name());
+    let start = format!("chromium-{}-{place}-", backend.name());
     for entry in std::fs::read_dir(scratch).into_iter().flatten().flatten() {
         if entry.file_name().to_string_lossy().starts_with(&start) {
             // What cannot be removed yet is removed by a later run.

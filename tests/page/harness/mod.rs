@@ -1,8 +1,9 @@
 //! A harness that drives the built page in a real Chromium.
 //!
-//! It speaks the browser's own protocol (Chrome DevTools Protocol) over a pipe, with nothing in between. There is one
-//! browser for each [`Backend`], started when first needed; every [`Page`] is a fresh tab in it. Only one page is
-//! open at a time, however many threads run the tests, so that times mean something.
+//! It speaks the browser's own protocol (Chrome DevTools Protocol) over a pipe, with nothing in between. As many pages
+//! are open at a time as threads run tests (four at most), each in browsers of its own: one for each [`Backend`],
+//! started when first needed; every [`Page`] is a fresh tab. A test whose subject is time opens its page with
+//! `Page::open_alone`: then no other is open.
 //!
 //! ```ignore
 //! let mut page = Page::open(Backend::WebGpu, Screen::Desktop, "?creature=snake");

@@ -1,13 +1,12 @@
 //! A tab with the page in it, and everything that a visitor can do to it.
 
-use super::browser::{Backend, Browser, Browsers, PATIENCE};
+use super::browser::{Backend, Browser, Lease, PATIENCE};
 use super::picture::Picture;
 use base64::{Engine, engine::general_purpose::STANDARD};
 use serde_json::{Value, json};
 use sinew::clock;
 use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
-use std::sync::MutexGuard;
 use std::time::Duration;
 
 /// The screen that the page is shown on.
@@ -23,7 +22,7 @@ pub enum Screen {
 
 /// The page in a tab of its own. Closing it (dropping it) fails the test if the page had problems.
 pub struct Page {
-    browsers: MutexGuard<'static, Browsers>,
+    lease: Lease,
     backend: Backend,
     screen: Screen,
     target: String,
@@ -31,6 +30,8 @@ pub struct Page {
     /// The tab's session and those of its workers.
     sessions: BTreeSet<String>,
     address: String,
+    /// When the test got its place, and when it last asked for the page.
+    begun: f64,
     opened: f64,
     problems: Vec<String>,
     expected: Vec<String>,
@@ -40,23 +41,30 @@ pub struct Page {
 impl Page {
     /// Opens the page with `tail` (`?query#hash`, or nothing) after its address.
     pub fn open(backend: Backend, screen: Screen, tail: &str) -> Self {
-        let address = std::env::var("SINEW_PAGE").expect(
-            "SINEW_PAGE is not set: these tests need the built page on a server; `cargo xtask test` does all that",
-        );
-        Self::open_at(address, backend, screen, tail)
+        Self::open_at(served(), backend, screen, tail)
+    }
+
+    /// The same for what measures time: no other page is open meanwhile.
+    pub fn open_alone(backend: Backend, screen: Screen, tail: &str) -> Self {
+        Self::open_in(Lease::take(true), served(), backend, screen, tail)
     }
 
     /// Opens another page: `tail` after the given address.
     pub fn open_at(address: String, backend: Backend, screen: Screen, tail: &str) -> Self {
-        let mut browsers = backend.browser();
-        let browser = browsers.get(backend);
+        Self::open_in(Lease::take(false), address, backend, screen, tail)
+    }
+
+    fn open_in(mut lease: Lease, address: String, backend: Backend, screen: Screen, tail: &str) -> Self {
+        let begun = clock::seconds();
+        let browser = lease.place.browser(backend);
         let target = text(&browser.call("Target.createTarget", json!({ "url": "about:blank" }), None)["targetId"]);
         let attach = json!({ "targetId": target, "flatten": true });
         let session = text(&browser.call("Target.attachToTarget", attach, None)["sessionId"]);
         let sessions = BTreeSet::from([session.clone()]);
         let (problems, expected, log) = (Vec::new(), Vec::new(), Vec::new());
         let mut page = Self {
-            browsers,
+            lease,
+            begun,
             backend,
             screen,
             target,
@@ -158,7 +166,7 @@ impl Page {
 
     /// Drags files from outside the browser onto the middle of the page and drops them there.
     pub fn drop_files(&mut self, files: &[(&str, &[u8])]) {
-        let paths = write_files(files);
+        let paths = write_files(files, self.lease.place.number());
         let (x, y) = self.middle_of("html");
         let data = json!({ "items": [], "files": paths, "dragOperationsMask": 1 });
         for kind in ["dragEnter", "dragOver", "drop"] {
@@ -168,7 +176,7 @@ impl Page {
 
     /// Chooses files in an `<input type="file">`.
     pub fn choose_files(&mut self, selector: &str, files: &[(&str, &[u8])]) {
-        let paths = write_files(files);
+        let paths = write_files(files, self.lease.place.number());
         let find = json!({ "expression": format!("document.querySelector({})", json!(selector)) });
         let found = self.call("Runtime.evaluate", find);
         let Some(object) = found["result"]["objectId"].as_str() else { self.fail(&format!("there is no {selector}")) };
@@ -349,7 +357,7 @@ impl Page {
     }
 
     fn browser(&mut self) -> &mut Browser {
-        self.browsers.get(self.backend)
+        self.lease.place.browser(self.backend)
     }
 
     /// Sorts what has happened, or happens first within some seconds, into problems and the rest.
@@ -374,7 +382,8 @@ impl Page {
 
     /// Fails the test with a screenshot and all that is known.
     fn fail(&mut self, reason: &str) -> ! {
-        let screen = self.screenshot("failed");
+        let test = std::thread::current().name().unwrap_or("page").replace("::", "-");
+        let screen = self.screenshot(&format!("failed-{test}"));
         let problems = self.problems();
         panic!(
             "{reason}\nproblems: {problems:#?}\nconsole: {:#?}\nthe {}-pixel-wide screen is in {}",
@@ -387,6 +396,7 @@ impl Page {
 
 impl Drop for Page {
     fn drop(&mut self) {
+        eprintln!("the page was open for {:.1} s", clock::seconds() - self.begun);
         if std::thread::panicking() {
             // The first failure is the one to report; the tab only has to go.
             let target = self.target.clone();
@@ -446,6 +456,12 @@ fn text(value: &Value) -> String {
     value.as_str().unwrap_or_default().to_owned()
 }
 
+/// Where the page is served.
+fn served() -> String {
+    std::env::var("SINEW_PAGE")
+        .expect("SINEW_PAGE is not set: these tests need the built page on a server; `cargo xtask test` does all that")
+}
+
 /// Where screenshots are kept.
 fn screenshots() -> PathBuf {
     let scratch = Path::new(env!("CARGO_TARGET_TMPDIR"));
@@ -453,8 +469,8 @@ fn screenshots() -> PathBuf {
 }
 
 /// Writes files where the browser can take them from.
-fn write_files(files: &[(&str, &[u8])]) -> Vec<PathBuf> {
-    let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join("dropped");
+fn write_files(files: &[(&str, &[u8])], place: usize) -> Vec<PathBuf> {
+    let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join(format!("dropped-{place}"));
     std::fs::create_dir_all(&folder).expect("the scratch folder can be written");
     let write = |(name, bytes): &(&str, &[u8])| {
         let path = folder.join(name);
