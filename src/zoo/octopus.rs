@@ -105,9 +105,9 @@ fn crawl(skeleton: &Skeleton, phase: f64) -> Vec<Rigid> {
     turns.set("mantle", pitch(-4.0 + 9.0 * wave(phase + 0.1)) * roll(6.0 * wave(phase - 0.15)));
     arms(&mut turns, |angle, sign, pair, bone| {
         let own = phase - 0.27 * pair as f64 - if sign < 0.0 { 0.5 } else { 0.0 } - 0.13 * bone as f64;
-        let size = [8.0, 17.0, 24.0, 34.0][bone];
-        let rest = [6.0, -7.0, 4.0, 26.0][bone];
-        lift(angle, sign, rest + 0.75 * size * wave(own)) * swing(sign * size * wave(own + 0.22))
+        let size = [10.0, 14.0, 17.0, 20.0][bone];
+        let rest = [4.0, -4.0, 4.0, 10.0][bone];
+        lift(angle, sign, rest + 0.6 * size * wave(own)) * swing(sign * size * wave(own + 0.22))
     });
     turns.pose(DVec3::ZERO)
 }
