@@ -23,6 +23,8 @@ const CANNON_ASIDE: f64 = 16.0;
 const ROOM: f64 = 1.25;
 /// How steep the neck, the tail and an elephant's trunk may hang at most, in degrees from straight down.
 const STEEPEST: [f64; 3] = [52.0, 30.0, 8.0];
+/// How much earlier an elephant's trunk moves than its body, as a share of the loop.
+const NOSE_AHEAD: f64 = 0.06;
 /// Halvings of the interval in which the folding of a leg is sought.
 const HALVINGS: usize = 30;
 
@@ -71,7 +73,8 @@ fn collapse(skeleton: &Skeleton, phase: f64, ways: &[[Way; 4]; 2]) -> Vec<Rigid>
     } else {
         lay(&mut turns, skeleton, shift, &["lower neck", "upper neck", "head"], [1.0, STEEPEST[0], ROOM], limp);
     }
-    lay(&mut turns, skeleton, shift, &PROBOSCIS, [1.0, STEEPEST[2], 1.0], limp);
+    // What touches the ground already gives way first.
+    lay(&mut turns, skeleton, shift, &PROBOSCIS, [1.0, STEEPEST[2], 1.0], DOWN.at(phase + NOSE_AHEAD).max(down));
     lay(&mut turns, skeleton, shift, &["tail root", "tail", "tail tip"], [-1.0, STEEPEST[1], 1.0], limp);
     turns.pose(shift)
 }
@@ -165,11 +168,12 @@ fn fold(turns: &mut Turns, skeleton: &Skeleton, shift: DVec3, names: [String; 4]
         let mut height = joint.y;
         let ends = parts.iter().map(|part| {
             height -= part.drop(amount);
-            height - amount * part.clear
+            // Bones are as high as they are thick only when they lie; before that the sole bears the leg.
+            height - amount.powi(3) * part.clear
         });
         ends.fold(f64::INFINITY, f64::min)
     };
-    // On its feet it sinks in a little more, the more it is folded too little.
+    // The less a leg is folded, the deeper it reaches.
     let (mut low, mut high) = (0.0, 1.0);
     for _ in 0..HALVINGS {
         let middle = 0.5 * (low + high);
