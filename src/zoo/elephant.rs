@@ -2,8 +2,8 @@
 
 use super::body::{Body, Turns, motion};
 use super::gait::{Curve, Step, pitch, roll, wave, yaw};
-use super::lying::collapse_folded;
 use super::limb::{Station, station};
+use super::lying::collapse_folded;
 use super::quadruped::{Joints, PROBOSCIS, Walk, mid, quadruped_bones};
 use super::skeleton::{Rigid, Skeleton};
 use glam::DVec3;
