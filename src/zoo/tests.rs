@@ -432,10 +432,12 @@ const HOVERS: f64 = 0.045;
 #[test]
 fn whoever_stands_or_lies_has_ground_under_it() {
     let mut wrong = Vec::new();
-    // Flags and birds do not stand, swimmers neither, and a hand is held by whom it belongs to. An octopus crawls: its
+    // Flags and birds do not stand, swimmers neither, and a hand is held by whom it belongs to. The earth in its pot holds the
+    // cactus. An octopus crawls: its
     // arms bear it in turns. Who walks or runs falls from one foot onto the other.
     let stands = |name: &str, motion: &str| {
-        !["bird", "cloth", "hand"].contains(&name) && !["walk", "run", "crawl", "gallop", "swim"].contains(&motion)
+        !["bird", "cloth", "hand", "cactus"].contains(&name)
+            && !["walk", "run", "crawl", "gallop", "swim"].contains(&motion)
     };
     for (name, motion, creature) in motions_where(stands) {
         let diagonal = creature.sequence.diagonal();
