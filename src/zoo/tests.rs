@@ -95,8 +95,8 @@ fn angles(points: &[DVec3], faces: &[[u32; 3]]) -> Vec<f64> {
 
 #[test]
 fn meshes_are_closed_and_well_shaped_at_every_size() {
-    // The cloth is open and the robot is no single skin: their own test follows. Between the
-    // bird's feathers slivers are left.
+    // The cloth is open and the robot is no single skin: their own test follows. Between the bird's
+    // feathers slivers are left.
     for (faces, names) in [
         (1_000, skins().filter(|&name| name != "bird").collect::<Vec<_>>()),
         (12_000, ONE_OF_A_KIND.into_iter().filter(|name| !["robot", "bird"].contains(name)).collect()),
@@ -432,9 +432,9 @@ const HOVERS: f64 = 0.045;
 #[test]
 fn whoever_stands_or_lies_has_ground_under_it() {
     let mut wrong = Vec::new();
-    // Flags and birds do not stand, swimmers neither, and a hand is held by whom it belongs to. The earth in its pot holds the
-    // cactus. An octopus crawls: its
-    // arms bear it in turns. Who walks or runs falls from one foot onto the other.
+    // Flags and birds do not stand, swimmers neither; a hand is held by whom it belongs to, and the earth in its pot
+    // holds the cactus. An octopus crawls: its arms bear it in turns. Who walks or runs falls from one foot onto the
+    // other.
     let stands = |name: &str, motion: &str| {
         !["bird", "cloth", "hand", "cactus"].contains(&name)
             && !["walk", "run", "crawl", "gallop", "swim"].contains(&motion)
