@@ -3,7 +3,8 @@
 use super::body::{Body, airborne, motion};
 use super::gait::{Curve, Step};
 use super::limb::{Station, station};
-use super::quadruped::{Joints, Walk, collapse_ahead, galloping, mid, quadruped_bones};
+use super::lying::collapse_ahead;
+use super::quadruped::{Joints, Walk, galloping, mid, quadruped_bones};
 use super::skeleton::{Rigid, Skeleton};
 use glam::DVec3;
 

@@ -3,7 +3,8 @@
 use super::body::{Body, Turns, motion};
 use super::gait::{Curve, Step, pitch, roll, wave, yaw};
 use super::limb::{Station, station};
-use super::quadruped::{Joints, PROBOSCIS, Walk, collapse_folded, mid, quadruped_bones};
+use super::lying::collapse_folded;
+use super::quadruped::{Joints, PROBOSCIS, Walk, mid, quadruped_bones};
 use super::skeleton::{Rigid, Skeleton};
 use glam::DVec3;
 
@@ -14,7 +15,7 @@ const JOINTS: Joints = Joints {
     trunk: [[0.0, 1.72, -0.75], [0.0, 1.72, 0.60]],
     neck: [[0.0, 1.92, 0.80], [0.0, 2.04, 1.02], [0.0, 2.12, 1.22]],
     muzzle: [0.0, 1.72, 1.74],
-    tail: [[0.0, 1.92, -1.34], [0.0, 1.62, -1.50], [0.0, 1.28, -1.54], [0.0, 0.90, -1.52]],
+    tail: [[0.0, 1.93, -1.45], [0.0, 1.62, -1.62], [0.0, 1.28, -1.65], [0.0, 0.90, -1.62]],
     fore: [[0.36, 1.72, 0.72], [0.38, 1.18, 0.60], [0.36, 0.64, 0.66], [0.355, 0.18, 0.66], [0.355, 0.0, 0.70]],
     hind: [[0.33, 1.66, -0.84], [0.38, 1.08, -0.68], [0.35, 0.54, -0.88], [0.345, 0.17, -0.85], [0.345, 0.0, -0.81]],
 };
@@ -81,13 +82,14 @@ pub fn elephant() -> Body {
         &["trunk", "tail root", "tail", "tail tip"],
         0.1,
         &[
-            mid(1.90, -1.16, 0.12, 0.9),
-            mid(1.90, -1.34, 0.085, 0.9),
-            mid(1.64, -1.49, 0.058, 0.95),
-            mid(1.30, -1.535, 0.050, 0.95),
-            mid(1.10, -1.53, 0.060, 0.95),
-            mid(0.96, -1.52, 0.070, 0.90),
-            mid(0.84, -1.515, 0.035, 0.90),
+            mid(1.90, -1.22, 0.12, 0.9),
+            mid(1.93, -1.43, 0.090, 0.9),
+            mid(1.80, -1.555, 0.068, 0.95),
+            mid(1.62, -1.62, 0.056, 0.95),
+            mid(1.30, -1.645, 0.050, 0.95),
+            mid(1.10, -1.635, 0.060, 0.95),
+            mid(0.96, -1.62, 0.070, 0.90),
+            mid(0.84, -1.615, 0.035, 0.90),
         ],
     );
     body.enlarge(SCALE);

@@ -212,7 +212,8 @@ fn gait(skeleton: &Skeleton, phase: f64) -> Vec<Rigid> {
 fn greet(skeleton: &Skeleton, phase: f64) -> Vec<Rigid> {
     let mut turns = Turns::new(skeleton);
     bend(&mut turns, |begins| 0.10 + 0.12 * wave(phase - 0.6 * begins));
-    turns.set("forearm", yaw(5.0 * wave(phase + 0.2)) * pitch(4.0 * wave(phase + 0.1)));
-    turns.set("palm", pitch(24.0 * wave(phase)) * yaw(8.0 * wave(phase - 0.1)));
+    turns.set("forearm", yaw(5.0 * wave(phase + 0.2)));
+    // The hand swings up from the ground, on which the forearm stays.
+    turns.set("palm", pitch(-22.0 + 22.0 * wave(phase)) * yaw(8.0 * wave(phase - 0.1)));
     turns.pose(DVec3::ZERO)
 }

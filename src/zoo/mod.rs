@@ -25,6 +25,7 @@ pub mod hand;
 pub mod horse;
 pub mod landmarks;
 pub mod limb;
+pub mod lying;
 pub mod mesher;
 pub mod octopus;
 pub mod person;
@@ -291,7 +292,9 @@ fn build(recipe: &Recipe, plan: &'static str, body: &Body, motion: &Motion) -> O
     for bone in &mut skeleton.bones {
         bone.joint *= scale;
         bone.end *= scale;
+        bone.radius *= scale;
     }
+    skeleton.belly *= scale;
     Some(Creature {
         sequence: Sequence::new(recipe.name.clone(), faces, larger(reference), poses).ok()?,
         labels,

@@ -101,13 +101,14 @@ fn arms(turns: &mut Turns, bend: impl Fn(f64, f64, usize, usize) -> DQuat) {
 /// Waves run along the arms, each in its own time; the mantle breathes.
 fn crawl(skeleton: &Skeleton, phase: f64) -> Vec<Rigid> {
     let mut turns = Turns::new(skeleton);
-    turns.set("head", roll(2.5 * wave(phase)) * pitch(2.5 * wave(phase + 0.2)));
+    turns.set("head", roll(wave(phase)) * pitch(wave(phase + 0.2)));
     turns.set("mantle", pitch(-4.0 + 9.0 * wave(phase + 0.1)) * roll(6.0 * wave(phase - 0.15)));
     arms(&mut turns, |angle, sign, pair, bone| {
         let own = phase - 0.27 * pair as f64 - if sign < 0.0 { 0.5 } else { 0.0 } - 0.13 * bone as f64;
-        let size = [8.0, 17.0, 24.0, 34.0][bone];
-        let rest = [6.0, -7.0, 4.0, 26.0][bone];
-        lift(angle, sign, rest + 0.75 * size * wave(own)) * swing(sign * size * wave(own + 0.22))
+        let size = [10.0, 14.0, 17.0, 20.0][bone];
+        // Roots stay low, so that most arms touch the ground.
+        let (rest, rise) = ([2.0, -3.0, 3.0, 8.0][bone], [1.5, 4.0, 9.0, 12.0][bone]);
+        lift(angle, sign, rest + rise * wave(own)) * swing(sign * size * wave(own + 0.22))
     });
     turns.pose(DVec3::ZERO)
 }

@@ -69,7 +69,7 @@ pub fn reshape(body: &mut Body, recipe: &Recipe) {
         let stations = limb.stations.iter().map(|s| move_station(s, owner(limb, old, s.at))).collect();
         Limb::new(limb.bones.clone(), limb.blend, limb.pair, limb.direction, stations)
     });
-    let limbs = limbs.collect();
+    let limbs: Vec<Limb> = limbs.collect();
     let stride = old.stride;
     for bone in &mut bones {
         bone.joint += up;
@@ -85,8 +85,20 @@ pub fn reshape(body: &mut Body, recipe: &Recipe) {
             piece.moved(at, change.girth, change.axis, change.stretch)
         })
         .collect();
+    body.skeleton = Skeleton { bones, stride: stride * proportion(recipe.legs), belly: 0.0 };
+    measure(&mut body.skeleton, &limbs);
     body.limbs = limbs;
-    body.skeleton = Skeleton { bones, stride: stride * proportion(recipe.legs) };
+}
+
+/// Tells bones how thick the limbs around them are, and the skeleton how high its trunk is.
+fn measure(skeleton: &mut Skeleton, limbs: &[Limb]) {
+    for (bone, number) in skeleton.bones.iter_mut().zip(0..) {
+        let around = limbs.iter().filter(|limb| limb.bones.contains(&number));
+        bone.radius = around.map(|limb| limb.project(bone.joint).1).fold(0.0, f64::max);
+    }
+    let trunk = limbs.iter().filter(|limb| limb.bones == [0]).flat_map(|limb| &limb.stations);
+    let lowest = trunk.map(|station| station.at.y - station.radius).fold(f64::INFINITY, f64::min);
+    skeleton.belly = if lowest.is_finite() { lowest } else { 0.0 };
 }
 
 /// The bone of a limb that a point beside it belongs to.

@@ -13,6 +13,8 @@ pub struct Bone {
     pub joint: DVec3,
     /// Its other end.
     pub end: DVec3,
+    /// How thick the limb around it is at the joint (its radius; 0 where there is none).
+    pub radius: f64,
 }
 
 /// The bones of a creature; parents come before their children.
@@ -22,11 +24,13 @@ pub struct Skeleton {
     pub bones: Vec<Bone>,
     /// How much longer the legs are than those that its motions were made for.
     pub stride: f64,
+    /// How high the underside of the first bone's body is.
+    pub belly: f64,
 }
 
 impl Default for Skeleton {
     fn default() -> Self {
-        Self { bones: Vec::new(), stride: 1.0 }
+        Self { bones: Vec::new(), stride: 1.0, belly: 0.0 }
     }
 }
 
@@ -58,7 +62,7 @@ impl Skeleton {
     /// Adds a bone with the given parent (by name) and returns its number.
     pub fn add(&mut self, name: &str, parent: Option<&str>, joint: DVec3, end: DVec3) -> u32 {
         let parent = parent.and_then(|p| self.find(p));
-        self.bones.push(Bone { name: name.to_owned(), parent, joint, end });
+        self.bones.push(Bone { name: name.to_owned(), parent, joint, end, radius: 0.0 });
         self.bones.len() as u32 - 1
     }
 
