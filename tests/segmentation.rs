@@ -37,17 +37,19 @@ fn assert_parts_in_one_piece(sequence: &Sequence, labels: &[u32]) {
     assert_eq!(pairs.len(), regions, "a part fell apart ({} regions)", region.iter().max().map_or(0, |m| m + 1));
 }
 
-/// Creatures whose motion tells all of their bones apart.
+/// Creatures whose smooth skin still tells all of their bones apart.
 const TOLD_APART: [&str; 7] = ["horse", "camel", "person", "person-arms-out", "dinosaur", "snake", "hand"];
 
 #[test]
 fn exactly_skinned_creatures_come_back_as_their_bones() {
-    for name in TOLD_APART {
+    // The cloth has one part, and is no skin around bones. Thirty small bones in a trunk or in eight arms are not all told apart.
+    let least = |bones: usize| if bones > 30 { 0.93 } else { 0.95 };
+    for &name in zoo::NAMES.iter().filter(|&&name| name != "cloth") {
         let creature = creature(name, 8_000, true);
         let result = by_default(&creature.sequence);
         let agreement = agreement(&creature.sequence, &result.labels, &creature.labels);
         println!("{name}: {} parts for {} bones, agreement {agreement:.3}", result.parts.len(), creature.parts.len());
-        assert!(agreement >= 0.95, "{name}: {agreement}");
+        assert!(agreement >= least(creature.parts.len()), "{name}: {agreement}");
         assert_parts_in_one_piece(&creature.sequence, &result.labels);
     }
 }

@@ -8,7 +8,7 @@ use zip::write::SimpleFileOptions;
 use zip::{CompressionMethod, ZipWriter};
 
 /// An archive of files, deflated and stored in turn.
-fn archive(files: &[(&str, &[u8])]) -> Vec<u8> {
+pub fn archive(files: &[(&str, &[u8])]) -> Vec<u8> {
     let mut zip = ZipWriter::new(std::io::Cursor::new(Vec::new()));
     for (number, (name, bytes)) in files.iter().enumerate() {
         let method = if number % 2 == 0 { CompressionMethod::Deflated } else { CompressionMethod::Stored };

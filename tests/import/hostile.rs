@@ -1,20 +1,11 @@
 //! Files that lie, are damaged, or were made to do harm.
 
+use super::dice::Dice;
 use super::gltf_maker::{Maker, draco_triangle, f32s, rich, triangle};
 use super::{file, opens_or_says_why, refusal, unwelded};
 use proptest::prelude::*;
 use serde_json::json;
 use sinew::import::{Options, open};
-
-/// Numbers that look random and are the same every time.
-struct Dice(u64);
-
-impl Dice {
-    fn below(&mut self, end: usize) -> usize {
-        self.0 = self.0.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
-        (self.0 >> 33) as usize % end.max(1)
-    }
-}
 
 /// A file of each kind of packing.
 fn corpus() -> Vec<Vec<u8>> {
