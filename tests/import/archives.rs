@@ -1,5 +1,5 @@
 //! Damaged zip archives: fields of their headers replaced, bytes changed, pieces moved. [`tens_of_thousands`] runs with
-//! the other tests; `cargo test --release --test import_made a_million -- --ignored` tries a million.
+//! the other tests; `cargo test --test import_made a_million -- --ignored` tries a million.
 
 use super::dice::Dice;
 use super::folders::archive;
