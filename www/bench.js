@@ -3,6 +3,9 @@
 const RUNS = 3;
 /** The figures between which a point is dragged: about 5,000 vertices each. */
 const PAIR = { faces: 10_000, poses: 16 };
+/** The horse whose key points are chosen: about 2,500 vertices. */
+const SOUGHT = { name: 'horse', faces: 5_000, poses: 10 };
+const POINTS = 12;
 const DRAGS = 15;
 
 /** @returns {Promise<{name: string, milliseconds: number}[]>} */
@@ -18,10 +21,20 @@ export async function bench(app) {
     taken.push(performance.now() - start);
   }
   results.push({ name: `segment ${name}, ${sizes.faces} faces × ${sizes.poses} poses`, milliseconds: median(taken) });
-  return results.concat(await dragged(app));
+  return results.concat(await sought(app), await dragged(app));
 }
 
 const median = (list) => [...list].sort((a, b) => a - b)[list.length >> 1];
+
+/** How long the choice of key points takes in the worker. */
+async function sought(app) {
+  await app.openCreature(SOUGHT);
+  const start = performance.now();
+  const run = await app.engine.call('keypoints', { parameters: { ...app.about.keypoints, points: POINTS } });
+  const { vertices, poses } = app.sequence.sizes;
+  const name = `${run.key_points.length} key points, ${vertices} vertices × ${poses} poses`;
+  return [{ name, milliseconds: performance.now() - start }];
+}
 
 /** How long the motion takes to follow a point that is dragged over the target: in the engine, and until the page has it. */
 async function dragged(app) {
