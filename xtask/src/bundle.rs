@@ -23,7 +23,7 @@ struct Bundle {
     budget: usize,
 }
 
-const BUNDLES: [Bundle; 2] = [Bundle { name: "page", budget: 1_200_000 }, Bundle { name: "worker", budget: 1_000_000 }];
+const BUNDLES: [Bundle; 2] = [Bundle { name: "page", budget: 1_200_000 }, Bundle { name: "worker", budget: 1_050_000 }];
 
 /// Where the result lies.
 pub fn folder() -> PathBuf {
@@ -62,11 +62,15 @@ fn add_service_worker(files: &mut dist::Files) -> Result<()> {
 
 /// Compiles the crate with the bundle's feature and returns the path of the wasm.
 ///
-/// The quick way uses the profile of tests, so that most of what it needs is there already.
+/// The quick way uses the profile of tests, so that most of what it needs is there already. The other asks for the wasm
+/// alone: beside a library for Rust, Cargo leaves out optimisation at link time.
 fn compile(bundle: &Bundle, dev: bool) -> Result<PathBuf> {
-    let profile = if dev { "dev" } else { bundle.name };
-    let mut cargo = shell::cargo(["build", "--lib", "--target", WASM, "--no-default-features"]);
+    let (verb, profile) = if dev { ("build", "dev") } else { ("rustc", bundle.name) };
+    let mut cargo = shell::cargo([verb, "--lib", "--target", WASM, "--no-default-features"]);
     cargo.args(["--features", bundle.name, "--profile", profile]);
+    if !dev {
+        cargo.args(["--crate-type", "cdylib"]);
+    }
     shell::run(cargo)?;
     let folder = if dev { "debug" } else { bundle.name };
     Ok(shell::target().join(WASM).join(folder).join("sinew.wasm"))
