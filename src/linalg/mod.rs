@@ -5,4 +5,8 @@ pub mod cholesky;
 pub mod conjugate_gradient;
 pub mod jacobi;
 pub mod polar;
+#[cfg(feature = "solvers")]
+pub mod principal;
 pub mod rigid_fit;
+#[cfg(feature = "solvers")]
+pub mod symmetric;

@@ -6,9 +6,10 @@
 //! places at once, so a few rounds suffice; but it can run in circles. When the number of corrections has not fallen for
 //! some rounds, a monotone method takes over (`descent`).
 
-use super::factor::{Factor, Solver};
+use super::factor::Solver;
 use super::quadratic::Quadratic;
 use super::{descent, fronts};
+use crate::linalg::principal::Principal;
 
 /// Rounds of guessing, at most, and without fewer corrections than ever before.
 const ROUNDS: usize = 250;
@@ -66,7 +67,7 @@ pub struct Column {
     /// See [`super::Weights::kkt_residual`].
     pub residual: f64,
     /// The last factor, if it is not too large to keep.
-    pub factor: Option<Factor>,
+    pub factor: Option<Principal>,
 }
 
 /// Solves for one handle: weights are fixed where `start` says so, and elsewhere its states are the first guess.
@@ -105,7 +106,7 @@ pub struct Problem<'a> {
 }
 
 impl<'a> Problem<'a> {
-    fn new(quadratic: &'a Quadratic, members: &'a [u32], factor: Option<Factor>) -> Self {
+    fn new(quadratic: &'a Quadratic, members: &'a [u32], factor: Option<Principal>) -> Self {
         let n = quadratic.inverse_mass.len();
         let solver = Solver::new(quadratic, factor);
         Self {

@@ -8,7 +8,7 @@ use super::box_problem::{Column, Problem, State};
 use super::factor::Solver;
 
 /// Rounds in neighbourhoods between two on the whole.
-const ROUNDS: usize = 40;
+const ROUNDS: usize = 12;
 
 /// A neighbourhood is everything within so many steps of Q, two edges each, of what was corrected: wide enough for a front
 /// to move on by itself, which halves the rounds on the whole.
@@ -26,12 +26,15 @@ pub fn follow(problem: &mut Problem, column: &mut Column, mut corrected: Vec<u32
             }
         }
         let window = around(problem, corrected, REACH);
-        measure(problem, column, &window);
-        let free: Vec<u32> = window.iter().filter(|v| column.states[**v as usize] == State::Free).copied().collect();
+        let is_free = |v: &&u32| column.states[**v as usize] == State::Free;
+        let mut free: Vec<u32> = window.iter().filter(is_free).copied().collect();
+        free.sort_unstable();
+        measure(problem, column, &free);
         let Some(step) = solver.step(&free, &problem.forces) else { return };
         free.iter().zip(&step).for_each(|(&v, &d)| column.weights[v as usize] += d);
         let felt = around(problem, window, 1);
-        measure(problem, column, &felt);
+        let held: Vec<u32> = felt.iter().filter(|v| column.states[**v as usize] != State::Free).copied().collect();
+        measure(problem, column, &held);
         corrected = problem.correct(column, &felt);
         if corrected.is_empty() {
             return;
@@ -46,7 +49,7 @@ fn measure(problem: &mut Problem, column: &Column, vertices: &[u32]) {
     }
 }
 
-/// A set with everything within `reach` steps of Q, ascending.
+/// A set with everything within `reach` steps of Q.
 fn around(problem: &mut Problem, mut set: Vec<u32>, reach: usize) -> Vec<u32> {
     set.iter().for_each(|&v| problem.marks[v as usize] = true);
     let mut from = 0;
@@ -62,6 +65,5 @@ fn around(problem: &mut Problem, mut set: Vec<u32>, reach: usize) -> Vec<u32> {
         from = end;
     }
     set.iter().for_each(|&v| problem.marks[v as usize] = false);
-    set.sort_unstable();
     set
 }

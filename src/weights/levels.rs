@@ -16,6 +16,9 @@ const COARSEST: usize = 200;
 /// A coarser mesh must have at most this share of the vertices.
 const SHRINK: f64 = 0.7;
 
+/// A weight is first held at zero if at least this share of what lies around it is so on the coarser mesh.
+const MOSTLY: f64 = 0.7;
+
 /// A mesh with its energy, and its pieces.
 #[derive(Debug)]
 pub struct Level {
@@ -121,16 +124,17 @@ pub fn guess(levels: &[Level], places: &[u32], own: u32) -> Column {
             continue;
         }
         let around = || std::iter::once(v).chain(fine.surface.rings.of(v).iter().copied()).map(up);
+        let count = around().count() as f64;
         let known = around().all(|u| coarse.surface.piece[u as usize] == piece);
-        let low = around()
-            .all(|u| matches!(found.states[u as usize], State::Low | State::Fixed) && found.weights[u as usize] == 0.0);
+        let held =
+            |u: u32| matches!(found.states[u as usize], State::Low | State::Fixed) && found.weights[u as usize] == 0.0;
+        let low = around().filter(|&u| held(u)).count() as f64 >= MOSTLY * count;
         let high = around().all(|u| found.states[u as usize] == State::High);
         column.states[v as usize] = match (known, low, high) {
             (true, true, _) => State::Low,
             (true, _, true) => State::High,
             _ => State::Free,
         };
-        let count = around().count() as f64;
         column.weights[v as usize] = around().map(|u| found.weights[u as usize].clamp(0.0, 1.0)).sum::<f64>() / count;
     }
     column

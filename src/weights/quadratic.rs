@@ -1,57 +1,11 @@
 //! The energy wᵀ Q w with Q = L M⁻¹ L: the integral of the squared Laplacian.
 
-use crate::linalg::cholesky::Upper;
+use crate::linalg::principal::Tree;
+use crate::linalg::symmetric::Symmetric;
 use crate::mesh::laplacian::Laplacian;
 
 /// A vertex with less area than this share of the mean is taken to have as much: the inverse enters Q.
 const LEAST_MASS: f64 = 1e-7;
-
-/// A symmetric sparse matrix, both triangles, by rows.
-#[derive(Debug)]
-pub struct Symmetric {
-    starts: Vec<u32>,
-    columns: Vec<u32>,
-    values: Vec<f64>,
-}
-
-impl Symmetric {
-    /// The entries of a row: column numbers, rising, and values.
-    pub fn row(&self, row: usize) -> impl Iterator<Item = (usize, f64)> {
-        let range = self.starts[row] as usize..self.starts[row + 1] as usize;
-        self.columns[range.clone()].iter().map(|&c| c as usize).zip(self.values[range].iter().copied())
-    }
-
-    /// The number of rows.
-    pub fn size(&self) -> usize {
-        self.starts.len() - 1
-    }
-
-    /// The product of a row with a vector.
-    pub fn times(&self, row: usize, vector: &[f64]) -> f64 {
-        self.row(row).map(|(column, value)| value * vector[column]).sum()
-    }
-
-    /// The entry of a row on the diagonal.
-    fn diagonal(&self, row: usize) -> f64 {
-        self.row(row).find(|&(column, _)| column == row).map_or(0.0, |(_, value)| value)
-    }
-
-    /// The upper triangle of the rows and columns listed in `members`, ascending; `place` is each one's place in that list, and
-    /// `u32::MAX` for those not in it.
-    pub fn upper(&self, members: &[u32], place: &[u32]) -> Upper {
-        let mut upper = Upper { starts: vec![0], rows: Vec::new(), values: Vec::new() };
-        for (column, &v) in members.iter().enumerate() {
-            for (u, value) in self.row(v as usize) {
-                if place[u] as usize <= column {
-                    upper.rows.push(place[u]);
-                    upper.values.push(value);
-                }
-            }
-            upper.starts.push(upper.rows.len() as u32);
-        }
-        upper
-    }
-}
 
 /// The matrices of the energy.
 #[derive(Debug)]
@@ -64,6 +18,8 @@ pub struct Quadratic {
     pub matrix: Symmetric,
     /// The diagonal of Q.
     pub diagonal: Vec<f64>,
+    /// How Q and its parts are factored.
+    pub tree: Tree,
 }
 
 impl Quadratic {
@@ -77,7 +33,8 @@ impl Quadratic {
         let laplacian = stiffness(laplacian, n);
         let matrix = square(&laplacian, &inverse_mass);
         let diagonal = (0..n).map(|v| matrix.diagonal(v)).collect();
-        Self { laplacian, inverse_mass, matrix, diagonal }
+        let tree = Tree::new(&matrix);
+        Self { laplacian, inverse_mass, matrix, diagonal, tree }
     }
 
     /// Q w on a piece with the vertices `members`, into `gradient`; from L twice, which loses fewer digits than from Q.
@@ -115,20 +72,17 @@ fn stiffness(laplacian: &Laplacian, n: usize) -> Symmetric {
     }
     entries.extend(diagonal.iter().enumerate().map(|(v, &d)| (v as u32, v as u32, d)));
     entries.sort_unstable_by_key(|&(row, column, _)| (row, column));
-    let mut matrix = Symmetric { starts: vec![0; n + 1], columns: Vec::new(), values: Vec::new() };
-    for (row, column, value) in entries {
-        matrix.starts[row as usize + 1] += 1;
-        matrix.columns.push(column);
-        matrix.values.push(value);
-    }
-    (0..n).for_each(|row| matrix.starts[row + 1] += matrix.starts[row]);
-    matrix
+    let mut starts = vec![0; n + 1];
+    entries.iter().for_each(|entry| starts[entry.0 as usize + 1] += 1);
+    (0..n).for_each(|row| starts[row + 1] += starts[row]);
+    let (columns, values) = entries.into_iter().map(|(_, column, value)| (column, value)).unzip();
+    Symmetric::new(starts, columns, values)
 }
 
 /// L M⁻¹ L, by rows.
 fn square(laplacian: &Symmetric, inverse_mass: &[f64]) -> Symmetric {
     let n = laplacian.size();
-    let mut matrix = Symmetric { starts: vec![0], columns: Vec::new(), values: Vec::new() };
+    let (mut starts, mut columns, mut values) = (vec![0], Vec::new(), Vec::new());
     let mut sum = vec![0.0; n];
     let mut seen = vec![u32::MAX; n];
     let mut touched = Vec::new();
@@ -146,9 +100,9 @@ fn square(laplacian: &Symmetric, inverse_mass: &[f64]) -> Symmetric {
             }
         }
         touched.sort_unstable();
-        matrix.columns.extend(&touched);
-        matrix.values.extend(touched.iter().map(|&c| sum[c as usize]));
-        matrix.starts.push(matrix.columns.len() as u32);
+        columns.extend(&touched);
+        values.extend(touched.iter().map(|&c| sum[c as usize]));
+        starts.push(columns.len() as u32);
     }
-    matrix
+    Symmetric::new(starts, columns, values)
 }

@@ -1,0 +1,56 @@
+//! Symmetric sparse matrices.
+
+use super::cholesky::Upper;
+
+/// A symmetric sparse matrix, both triangles, by rows.
+#[derive(Debug)]
+pub struct Symmetric {
+    starts: Vec<u32>,
+    columns: Vec<u32>,
+    values: Vec<f64>,
+}
+
+impl Symmetric {
+    /// From `starts`, n + 1 places in `columns` and `values` where each row starts, and their length; column numbers rise
+    /// within a row.
+    pub fn new(starts: Vec<u32>, columns: Vec<u32>, values: Vec<f64>) -> Self {
+        Self { starts, columns, values }
+    }
+
+    /// The entries of a row: column numbers, rising, and values.
+    pub fn row(&self, row: usize) -> impl Iterator<Item = (usize, f64)> {
+        let range = self.starts[row] as usize..self.starts[row + 1] as usize;
+        self.columns[range.clone()].iter().map(|&c| c as usize).zip(self.values[range].iter().copied())
+    }
+
+    /// The number of rows.
+    pub fn size(&self) -> usize {
+        self.starts.len() - 1
+    }
+
+    /// The product of a row with a vector.
+    pub fn times(&self, row: usize, vector: &[f64]) -> f64 {
+        self.row(row).map(|(column, value)| value * vector[column]).sum()
+    }
+
+    /// The entry of a row on the diagonal.
+    pub fn diagonal(&self, row: usize) -> f64 {
+        self.row(row).find(|&(column, _)| column == row).map_or(0.0, |(_, value)| value)
+    }
+
+    /// The upper triangle of the rows and columns listed in `members`, ascending; `place` is each one's place in that list, and
+    /// `u32::MAX` for those not in it.
+    pub fn upper(&self, members: &[u32], place: &[u32]) -> Upper {
+        let mut upper = Upper { starts: vec![0], rows: Vec::new(), values: Vec::new() };
+        for (column, &v) in members.iter().enumerate() {
+            for (u, value) in self.row(v as usize) {
+                if place[u] as usize <= column {
+                    upper.rows.push(place[u]);
+                    upper.values.push(value);
+                }
+            }
+            upper.starts.push(upper.rows.len() as u32);
+        }
+        upper
+    }
+}
