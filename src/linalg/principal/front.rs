@@ -1,6 +1,7 @@
 //! Dense elimination of the leading columns of a symmetric matrix, in tiles of two vectors by four columns.
 
 use pulp::{Arch, Simd, WithSimd};
+use std::ops::Range;
 
 /// Rows and columns are counted in fours; what is over is zero.
 pub const TILE: usize = 4;
@@ -22,7 +23,8 @@ pub struct Front {
     pub below: usize,
     /// The lower triangle of the pivots' columns, column by column: pivots, padded, and the rows beneath, padded.
     pub panel: Vec<f64>,
-    /// The lower triangle of the rest, column by column, padded.
+    /// The lower triangle of the rest in fours of columns, each four from its first column's diagonal on; see
+    /// [`Front::rest_column`].
     pub rest: Vec<f64>,
 }
 
@@ -31,7 +33,9 @@ impl Front {
     pub fn reset(&mut self, pivots: usize, below: usize) {
         (self.pivots, self.below) = (pivots, below);
         let rows = self.rows();
-        for (values, count) in [(&mut self.panel, rows * pivots), (&mut self.rest, padded(below) * padded(below))] {
+        for (values, count) in
+            [(&mut self.panel, rows * pivots), (&mut self.rest, rest_from(padded(below), padded(below)))]
+        {
             values.clear();
             values.resize(count, 0.0);
         }
@@ -40,6 +44,14 @@ impl Front {
     /// The rows of the panel, padding included.
     pub fn rows(&self) -> usize {
         padded(self.pivots) + padded(self.below)
+    }
+
+    /// Where a column of the rest lies in it, from the first row that it has on, and which row that is.
+    pub fn rest_column(&self, column: usize) -> (Range<usize>, usize) {
+        let (side, first) = (padded(self.below), column - column % TILE);
+        let rows = side - first;
+        let start = rest_from(side, first) + column % TILE * rows;
+        (start..start + rows, first)
     }
 
     /// Replaces the panel by the factor's columns and the rest by what is left to be eliminated; false where a pivot is
@@ -73,6 +85,11 @@ impl Front {
             pivots[j] = (pivots[j] - sum) / column[j];
         }
     }
+}
+
+/// Where a four of columns begins in the rest, which has `side` rows.
+fn rest_from(side: usize, column: usize) -> usize {
+    side * column - column * column.saturating_sub(TILE) / 2
 }
 
 /// The sum of products of two vectors, as far as the shorter goes; eight sums side by side.
@@ -115,11 +132,13 @@ impl WithSimd for Elimination<'_> {
                 subtract(simd, Source { values: block, rows }, [first, first], Target { columns, rows, first });
             }
         }
-        let (top, rows_left) = (padded(pivots), padded(front.below).max(1));
+        let (top, side) = (padded(pivots), padded(front.below));
         let source = Source { values: &front.panel, rows };
-        for (columns, first) in front.rest.chunks_mut(TILE * rows_left).zip((0..).step_by(TILE)) {
-            let from = top + first;
-            subtract(simd, source, [from, from], Target { columns, rows: rows_left, first });
+        let mut rest = &mut front.rest[..];
+        for first in (0..side).step_by(TILE) {
+            let (columns, later) = rest.split_at_mut(TILE * (side - first));
+            subtract(simd, source, [top + first, top + first], Target { columns, rows: side - first, first: 0 });
+            rest = later;
         }
         true
     }

@@ -211,20 +211,22 @@ fn scatter(unknowns: &[u32], values: &[f64], all: &mut [f64]) {
 impl Part {
     /// Adds what is left to a node above; `place` is where each row is there.
     fn add_to(&self, front: &mut Front, place: &[u32]) {
-        let places: Vec<u32> = self.rows.iter().map(|&v| place[v as usize]).collect();
-        let (top, side) = (padded(front.pivots), padded(front.below));
-        let rows = front.rows();
-        for (j, (&to, left)) in
-            places.iter().zip(self.front.rest.chunks_exact(padded(self.rows.len()).max(1))).enumerate()
-        {
-            let to = to as usize;
-            let (column, shift) = match to {
+        let places: Vec<usize> = self.rows.iter().map(|&v| place[v as usize] as usize).collect();
+        let (top, rows) = (padded(front.pivots), front.rows());
+        for (j, &to) in places.iter().enumerate() {
+            let (left, first) = self.front.rest_column(j);
+            let left = &self.front.rest[left][j - first..];
+            let (column, from) = match to {
                 to if to < front.pivots => (&mut front.panel[to * rows..(to + 1) * rows], 0),
-                to if to < top + side => (&mut front.rest[(to - top) * side..(to - top + 1) * side], top),
+                to if to < rows => {
+                    let (column, first) = front.rest_column(to - top);
+                    (&mut front.rest[column], top + first)
+                }
+                // It has left the set.
                 _ => continue,
             };
-            for (&place, value) in places[j..].iter().zip(&left[j..]) {
-                if let Some(entry) = column.get_mut((place as usize).wrapping_sub(shift)) {
+            for (place, value) in places[j..].iter().zip(left) {
+                if let Some(entry) = column.get_mut(place.wrapping_sub(from)) {
                     *entry += value;
                 }
             }
