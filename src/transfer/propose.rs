@@ -29,6 +29,9 @@ const COMPANY: [usize; 2] = [60, 120];
 /// Samples of the target that are considered in the first rounds.
 const CONSIDERED: usize = 400;
 
+/// How far points listen in the rounds that find the places.
+const REACHES: [f64; 7] = [0.2, 0.15, 0.12, 0.1, 0.1, 0.1, 0.1];
+
 /// How much is listened to a point asked for, where a sample counts one: users' points may lie close together.
 const ASKED: f64 = 0.3;
 
@@ -125,7 +128,7 @@ impl Proposer {
             &crowd.distances,
             start.spread(crowd.points.len(), COMPANY, points.len()),
         );
-        for reach in [0.2, 0.15, 0.1, 0.1] {
+        for reach in REACHES {
             consensus.round(&Rules { reach, ..LAST });
         }
         Ok(self.read(&consensus, points, known))

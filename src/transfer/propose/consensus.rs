@@ -15,7 +15,7 @@ use glam::DVec3;
 const LISTENS: usize = 48;
 
 /// How far the scale around a point may differ from the scale of all.
-const LOCAL_SCALE: [f64; 2] = [0.8, 1.25];
+const LOCAL_SCALE: [f64; 2] = [0.7, 1.4];
 
 /// How much more a given place counts than a found one.
 const GIVEN: f64 = 3.0;
@@ -71,7 +71,7 @@ pub struct Rules {
 }
 
 /// The rules of the last round, and by which outcomes are compared.
-pub const LAST: Rules = Rules { reach: 0.1, place: 0.5, facing: 0.04 };
+pub const LAST: Rules = Rules { reach: 0.1, place: 0.75, facing: 0.04 };
 
 /// The points, where they are now, and what they think of it.
 pub struct Consensus<'a> {

@@ -61,8 +61,8 @@ pub(super) fn best(proposer: &Proposer, crowd: &Crowd) -> Start {
         starts.push(lay(&|p| motion.apply(p), motion.rotation));
     }
     let schedules: [&[Rules]; 2] = [
-        &[rules(1.0, 0.5), rules(0.5, 0.5), rules(0.3, 0.5), rules(0.2, 0.5)],
-        &[rules(1.0, 0.1), rules(1.0, 0.1), rules(0.5, 0.2), rules(0.3, 0.5), rules(0.2, 0.5)],
+        &[rules(1.0, 0.75), rules(0.5, 0.75), rules(0.3, 0.75), rules(0.2, 0.75)],
+        &[rules(1.0, 0.15), rules(1.0, 0.15), rules(0.5, 0.3), rules(0.3, 0.75), rules(0.2, 0.75)],
     ];
     let mut best: Option<Start> = None;
     for start in &starts {
@@ -93,7 +93,7 @@ pub(super) fn orientations(proposer: &Proposer) -> Vec<Orientation> {
     let crowd = proposer.crowd(COMPANY[0], &[], &[]);
     let score = |turn: DMat3| {
         let start = laid(&proposer.target, &crowd, &|p| turn * p, turn);
-        run(&proposer.target, &crowd, start, &[rules(1.0, 0.5), rules(0.3, 0.5)]).badness
+        run(&proposer.target, &crowd, start, &[rules(1.0, 0.75), rules(0.3, 0.75)]).badness
     };
     let as_given = score(DMat3::IDENTITY);
     let mut best = (DMat3::IDENTITY, as_given * CLEARLY);
