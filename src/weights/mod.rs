@@ -9,6 +9,7 @@
 //! | wⱼ, the weights of handle j | a column of [`Weights::values`] |
 //! | ½ wᵀ Q w, Q = L M⁻¹ L | `quadratic` |
 //! | 0 ≤ w ≤ 1, w = 1 at its handle, 0 at the others | `box_problem`, a bounded quadratic problem per handle |
+//! | Q restricted to the weights that are free, solved again and again | `factor`, on [`crate::linalg::principal`] |
 //! | Σⱼ wⱼ = 1 | rows divided by their sums; with [`Parameters::joint`] a constraint, `joint` |
 //!
 //! The domain is the surface. Vertices that lie at one place are one; pieces without a handle follow the nearest piece
