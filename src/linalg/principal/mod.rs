@@ -77,10 +77,11 @@ impl Principal {
         self.parts.resize(tree.size(), None);
         self.alive.resize(tree.size(), false);
         let mut stale = Vec::new();
-        let mut touch = |mut node: u32| {
-            while node != NONE && !std::mem::replace(&mut room.stale[node as usize], true) {
+        let mut touch = |node: u32| {
+            let mut next = Some(node);
+            while let Some(node) = next.filter(|node| !std::mem::replace(&mut room.stale[*node as usize], true)) {
                 stale.push(node);
-                node = tree.parent(node);
+                next = tree.parent(node);
             }
         };
         for &gone in &without(&self.set, set) {

@@ -60,9 +60,9 @@ impl Tree {
         self.node[column as usize]
     }
 
-    /// The node above a node, or [`NONE`].
-    pub fn parent(&self, node: u32) -> u32 {
-        self.parent[node as usize]
+    /// The node above a node, if there is one.
+    pub fn parent(&self, node: u32) -> Option<u32> {
+        Some(self.parent[node as usize]).filter(|parent| *parent != NONE)
     }
 
     /// The columns of a node.
