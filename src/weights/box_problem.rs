@@ -21,8 +21,15 @@ const REFINEMENTS: usize = 3;
 /// How far a weight may leave the range and still count as within.
 const BOUND: f64 = 1e-14;
 
-/// Which force counts as none, in shares of the largest.
-const FORCE: f64 = 7e-7;
+/// Which force counts as none, in shares of the largest: a guess with no more than that against its bounds is right.
+const FORCE: f64 = 9e-7;
+
+/// While a guess is wrong, bounds are given up from this share of that force on: what is near the limit would be wrong in
+/// the next round.
+const GIVEN_UP: f64 = 0.4;
+
+/// The same share of that force may come from putting a free weight that has left the range back.
+const PUT_BACK: f64 = 0.1;
 
 /// The same on meshes of at most so many vertices, where rounding allows it and rounds cost nothing.
 const SMALL: usize = 300;
@@ -134,6 +141,9 @@ impl<'a> Problem<'a> {
             if !self.free_step(column) {
                 return false;
             }
+            if self.is_right(column) {
+                return self.refine(column);
+            }
             let corrected = self.correct(column, self.members);
             match corrected.len() {
                 0 => return self.refine(column),
@@ -176,16 +186,31 @@ impl<'a> Problem<'a> {
         true
     }
 
+    /// Whether bounds hold, within rounding, what they should.
+    fn is_right(&self, column: &Column) -> bool {
+        self.members.iter().all(|&v| {
+            let (w, force) = (column.weights[v as usize], self.forces[v as usize]);
+            let (outside, none) = ((-w).max(w - 1.0), self.tolerance(v, self.largest));
+            match column.states[v as usize] {
+                State::Free => outside <= BOUND || outside * self.quadratic.diagonal[v as usize] <= PUT_BACK * none,
+                State::Low => force >= -none,
+                State::High => force <= none,
+                State::Fixed => true,
+            }
+        })
+    }
+
     /// Among `vertices`, frees what is held the wrong way and holds what has left the range; those corrected.
     pub(super) fn correct(&self, column: &mut Column, vertices: &[u32]) -> Vec<u32> {
         let mut corrected = Vec::new();
         for &v in vertices {
             let (state, w, force) = (column.states[v as usize], column.weights[v as usize], self.forces[v as usize]);
+            let none = GIVEN_UP * self.tolerance(v, self.largest);
             let next = match state {
                 State::Free if w < -BOUND => State::Low,
                 State::Free if w > 1.0 + BOUND => State::High,
-                State::Low if force < -self.tolerance(v, self.largest) => State::Free,
-                State::High if force > self.tolerance(v, self.largest) => State::Free,
+                State::Low if force < -none => State::Free,
+                State::High if force > none => State::Free,
                 same => same,
             };
             if next != state {

@@ -8,7 +8,10 @@ use super::box_problem::{Column, Problem, State};
 use super::factor::Solver;
 
 /// Rounds in neighbourhoods between two on the whole.
-const ROUNDS: usize = 12;
+const ROUNDS: usize = 6;
+
+/// And none any more when so small a share of the first corrections is left: what they do to the whole matters more then.
+const LEFT: f64 = 0.1;
 
 /// A neighbourhood is everything within so many steps of Q, two edges each, of what was corrected: wide enough for a front
 /// to move on by itself, which halves the rounds on the whole.
@@ -17,6 +20,7 @@ const REACH: usize = 2;
 /// Corrects states near `corrected` vertices further.
 pub fn follow(problem: &mut Problem, column: &mut Column, mut corrected: Vec<u32>) {
     let mut solver = Solver::new(problem.quadratic, None);
+    let few = LEFT * corrected.len() as f64;
     for _ in 0..ROUNDS {
         for &v in &corrected {
             match column.states[v as usize] {
@@ -36,7 +40,7 @@ pub fn follow(problem: &mut Problem, column: &mut Column, mut corrected: Vec<u32
         let held: Vec<u32> = felt.iter().filter(|v| column.states[**v as usize] != State::Free).copied().collect();
         measure(problem, column, &held);
         corrected = problem.correct(column, &felt);
-        if corrected.is_empty() {
+        if corrected.len() as f64 <= few {
             return;
         }
     }
