@@ -13,9 +13,12 @@ const ROUNDS: usize = 6;
 /// And none any more when so small a share of the first corrections is left: what they do to the whole matters more then.
 const LEFT: f64 = 0.1;
 
-/// A neighbourhood is everything within so many steps of Q, two edges each, of what was corrected: wide enough for a front
-/// to move on by itself, which halves the rounds on the whole.
-const REACH: usize = 2;
+/// A neighbourhood is everything within so many edges of what was corrected: wide enough for a front to move on by itself,
+/// which halves the rounds on the whole.
+const REACH: usize = 4;
+
+/// Q ties what is within so many edges of each other.
+const TIED: usize = 2;
 
 /// Corrects states near `corrected` vertices further.
 pub fn follow(problem: &mut Problem, column: &mut Column, mut corrected: Vec<u32>) {
@@ -36,7 +39,7 @@ pub fn follow(problem: &mut Problem, column: &mut Column, mut corrected: Vec<u32
         measure(problem, column, &free);
         let Some(step) = solver.step(&free, &problem.forces) else { return };
         free.iter().zip(&step).for_each(|(&v, &d)| column.weights[v as usize] += d);
-        let felt = around(problem, window, 1);
+        let felt = around(problem, window, TIED);
         let held: Vec<u32> = felt.iter().filter(|v| column.states[**v as usize] != State::Free).copied().collect();
         measure(problem, column, &held);
         corrected = problem.correct(column, &felt);
@@ -53,14 +56,14 @@ fn measure(problem: &mut Problem, column: &Column, vertices: &[u32]) {
     }
 }
 
-/// A set with everything within `reach` steps of Q.
+/// A set with everything within `reach` edges.
 fn around(problem: &mut Problem, mut set: Vec<u32>, reach: usize) -> Vec<u32> {
     set.iter().for_each(|&v| problem.marks[v as usize] = true);
     let mut from = 0;
     for _ in 0..reach {
         let end = set.len();
         for i in from..end {
-            for (u, _) in problem.quadratic.matrix.row(set[i] as usize) {
+            for (u, _) in problem.quadratic.laplacian.row(set[i] as usize) {
                 if !std::mem::replace(&mut problem.marks[u], true) {
                     set.push(u as u32);
                 }

@@ -60,30 +60,82 @@ impl Front {
         Arch::new().dispatch(Elimination(self))
     }
 
-    /// Solves L y = x for the pivots, and takes from `below` what they contribute there.
+    /// Solves L y = x for the pivots, `x` being one number for each row of the panel, and takes from the rows beneath what
+    /// the pivots contribute there.
     #[inline(always)]
-    pub fn forward(&self, pivots: &mut [f64], below: &mut [f64]) {
-        let top = padded(self.pivots);
-        for (j, column) in self.panel.chunks_exact(self.rows()).enumerate() {
-            let y = pivots[j] / column[j];
-            pivots[j] = y;
-            for (x, l) in pivots[j + 1..].iter_mut().zip(&column[j + 1..]) {
-                *x -= l * y;
-            }
-            for (x, l) in below.iter_mut().zip(&column[top..]) {
-                *x -= l * y;
+    pub fn forward(&self, x: &mut [f64]) {
+        for first in (0..self.pivots).step_by(TILE) {
+            match self.pivots - first {
+                1 => forward(self.block::<1>(first), x, first),
+                2 => forward(self.block::<2>(first), x, first),
+                3 => forward(self.block::<3>(first), x, first),
+                _ => forward(self.block::<TILE>(first), x, first),
             }
         }
     }
 
-    /// Solves Lᵀ x = y for the pivots, with the solution in the rows `below`.
+    /// Solves Lᵀ x = y for the pivots, with the solution in the rows beneath them.
     #[inline(always)]
-    pub fn backward(&self, pivots: &mut [f64], below: &[f64]) {
-        let top = padded(self.pivots);
-        for (j, column) in self.panel.chunks_exact(self.rows()).enumerate().rev() {
-            let sum = dot(&column[top..], below) + dot(&column[j + 1..], &pivots[j + 1..]);
-            pivots[j] = (pivots[j] - sum) / column[j];
+    pub fn backward(&self, x: &mut [f64]) {
+        for first in (0..self.pivots).step_by(TILE).rev() {
+            match self.pivots - first {
+                1 => backward(self.block::<1>(first), x, first),
+                2 => backward(self.block::<2>(first), x, first),
+                3 => backward(self.block::<3>(first), x, first),
+                _ => backward(self.block::<TILE>(first), x, first),
+            }
         }
+    }
+
+    /// Some columns of the panel.
+    #[inline(always)]
+    fn block<const N: usize>(&self, first: usize) -> [&[f64]; N] {
+        let rows = self.rows();
+        let mut columns = [&self.panel[..0]; N];
+        for j in 0..N {
+            columns[j] = &self.panel[(first + j) * rows..(first + j + 1) * rows];
+        }
+        columns
+    }
+}
+
+/// Solves for the pivots of some columns, the first being that of row `first`.
+#[inline(always)]
+fn forward<const N: usize>(columns: [&[f64]; N], x: &mut [f64], first: usize) {
+    let (block, below) = x[first..].split_at_mut(N);
+    for j in 0..N {
+        block[j] /= columns[j][first + j];
+        for i in j + 1..N {
+            block[i] -= columns[j][first + i] * block[j];
+        }
+    }
+    let mut beneath = [&columns[0][..0]; N];
+    for j in 0..N {
+        beneath[j] = &columns[j][first + N..][..below.len()];
+    }
+    for i in 0..below.len() {
+        let mut sum = 0.0;
+        for j in 0..N {
+            sum += beneath[j][i] * block[j];
+        }
+        below[i] -= sum;
+    }
+}
+
+/// The same with the transposed columns.
+#[inline(always)]
+fn backward<const N: usize>(columns: [&[f64]; N], x: &mut [f64], first: usize) {
+    let (block, below) = x[first..].split_at_mut(N);
+    let mut beneath = [&columns[0][..0]; N];
+    for j in 0..N {
+        beneath[j] = &columns[j][first + N..][..below.len()];
+    }
+    let mut sums = dots(beneath, below);
+    for j in (0..N).rev() {
+        for i in j + 1..N {
+            sums[j] += columns[j][first + i] * block[i];
+        }
+        block[j] = (block[j] - sums[j]) / columns[j][first + j];
     }
 }
 
@@ -92,23 +144,30 @@ fn rest_from(side: usize, column: usize) -> usize {
     side * column - column * column.saturating_sub(TILE) / 2
 }
 
-/// The sum of products of two vectors, as far as the shorter goes; eight sums side by side.
+/// The sums of products of some vectors with another, all of one length; each in parts side by side.
 #[inline(always)]
-fn dot(a: &[f64], b: &[f64]) -> f64 {
+fn dots<const N: usize>(columns: [&[f64]; N], x: &[f64]) -> [f64; N] {
     const SIDE: usize = 8;
-    let count = a.len().min(b.len());
-    let (a, b) = (&a[..count], &b[..count]);
-    let mut sums = [0.0; SIDE];
-    for (x, y) in a.chunks_exact(SIDE).zip(b.chunks_exact(SIDE)) {
-        for i in 0..SIDE {
-            sums[i] += x[i] * y[i];
+    let whole = x.len() - x.len() % SIDE;
+    let mut parts = [[0.0; SIDE]; N];
+    for first in (0..whole).step_by(SIDE) {
+        let x = &x[first..first + SIDE];
+        for j in 0..N {
+            let column = &columns[j][first..first + SIDE];
+            for i in 0..SIDE {
+                parts[j][i] += column[i] * x[i];
+            }
         }
     }
-    let mut sum = (sums[0] + sums[4]) + (sums[1] + sums[5]) + (sums[2] + sums[6]) + (sums[3] + sums[7]);
-    for (x, y) in a.iter().zip(b).skip(count - count % SIDE) {
-        sum += x * y;
+    let mut sums = [0.0; N];
+    for j in 0..N {
+        let p = parts[j];
+        sums[j] = ((p[0] + p[4]) + (p[1] + p[5])) + ((p[2] + p[6]) + (p[3] + p[7]));
+        for i in whole..x.len() {
+            sums[j] += columns[j][i] * x[i];
+        }
     }
-    sum
+    sums
 }
 
 /// The elimination, with the widest vectors that the machine has.
@@ -129,7 +188,7 @@ impl WithSimd for Elimination<'_> {
                 return false;
             }
             for (columns, first) in later.chunks_mut(TILE * rows).zip((end..).step_by(TILE)) {
-                subtract(simd, Source { values: block, rows }, [first, first], Target { columns, rows, first });
+                subtract(simd, Source { values: block, rows }, first, Target { columns, rows, first });
             }
         }
         let (top, side) = (padded(pivots), padded(front.below));
@@ -137,7 +196,7 @@ impl WithSimd for Elimination<'_> {
         let mut rest = &mut front.rest[..];
         for first in (0..side).step_by(TILE) {
             let (columns, later) = rest.split_at_mut(TILE * (side - first));
-            subtract(simd, source, [top + first, top + first], Target { columns, rows: side - first, first: 0 });
+            subtract(simd, source, top + first, Target { columns, rows: side - first, first: 0 });
             rest = later;
         }
         true
@@ -184,20 +243,20 @@ struct Target<'a> {
     first: usize,
 }
 
-/// Subtracts, from `target`, the product of the source's rows from `from[0]` on with its four rows from `from[1]` on.
+/// Subtracts, from `target`, the product of the source's rows from `from` on with the first four of them.
 #[inline(always)]
-fn subtract<S: Simd>(simd: S, source: Source, from: [usize; 2], target: Target) {
+fn subtract<S: Simd>(simd: S, source: Source, from: usize, target: Target) {
     let Target { columns, rows, first } = target;
     let (mut row, count) = (0, rows - first);
     while row + 2 * S::F64_LANES <= count {
-        let sums = products::<S, 2>(simd, source, [from[0] + row, from[1]]);
+        let sums = products::<S, 2>(simd, source, [from + row, from]);
         for (to, sums) in columns.chunks_exact_mut(rows).zip(&sums) {
             take::<S>(simd, &mut to[first + row..], sums);
         }
         row += 2 * S::F64_LANES;
     }
     while row + S::F64_LANES <= count {
-        let sums = products::<S, 1>(simd, source, [from[0] + row, from[1]]);
+        let sums = products::<S, 1>(simd, source, [from + row, from]);
         for (to, sums) in columns.chunks_exact_mut(rows).zip(&sums) {
             take::<S>(simd, &mut to[first + row..], sums);
         }
@@ -206,7 +265,7 @@ fn subtract<S: Simd>(simd: S, source: Source, from: [usize; 2], target: Target) 
     for row in row..count {
         for (j, to) in columns.chunks_exact_mut(rows).enumerate() {
             let products =
-                source.values.chunks_exact(source.rows).map(|values| values[from[0] + row] * values[from[1] + j]);
+                source.values.chunks_exact(source.rows).map(|values| values[from + row] * values[from + j]);
             to[first + row] -= products.sum::<f64>();
         }
     }

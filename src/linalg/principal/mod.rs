@@ -166,27 +166,24 @@ impl WithSimd for Solution<'_> {
     fn with_simd<S: Simd>(self, _simd: S) {
         let Self { factor, x, room } = self;
         let all = &mut room.x;
-        let (mut pivots, mut below) = (Vec::new(), Vec::new());
+        let mut of_node = Vec::new();
         all.fill(0.0);
-        scatter(&factor.set, x, all);
+        factor.set.iter().zip(&*x).for_each(|(&v, &value)| all[v as usize] = value);
         for part in factor.parts.iter().flatten() {
-            gather(&part.columns, all, &mut pivots);
-            gather(&part.rows, all, &mut below);
-            part.front.forward(&mut pivots, &mut below);
-            scatter(&part.columns, &pivots, all);
-            scatter(&part.rows, &below, all);
+            part.gather(all, &mut of_node);
+            part.front.forward(&mut of_node);
+            part.scatter(&of_node, all);
         }
         // Rows that have left the set since a node was done are zero.
         for (&v, value) in factor.set.iter().zip(&mut *x) {
             *value = all[v as usize];
         }
         all.fill(0.0);
-        scatter(&factor.set, x, all);
+        factor.set.iter().zip(&*x).for_each(|(&v, &value)| all[v as usize] = value);
         for part in factor.parts.iter().flatten().rev() {
-            gather(&part.columns, all, &mut pivots);
-            gather(&part.rows, all, &mut below);
-            part.front.backward(&mut pivots, &below);
-            scatter(&part.columns, &pivots, all);
+            part.gather(all, &mut of_node);
+            part.front.backward(&mut of_node);
+            part.scatter(&of_node, all);
         }
         for (&v, value) in factor.set.iter().zip(x) {
             *value = all[v as usize];
@@ -194,22 +191,26 @@ impl WithSimd for Solution<'_> {
     }
 }
 
-/// The values of some unknowns.
-#[inline(always)]
-fn gather(unknowns: &[u32], all: &[f64], values: &mut Vec<f64>) {
-    values.clear();
-    values.extend(unknowns.iter().map(|&v| all[v as usize]));
-}
-
-/// Puts values where the unknowns are.
-#[inline(always)]
-fn scatter(unknowns: &[u32], values: &[f64], all: &mut [f64]) {
-    for (&v, &value) in unknowns.iter().zip(values) {
-        all[v as usize] = value;
-    }
-}
-
 impl Part {
+    /// The values of its unknowns, one for each row of its front.
+    #[inline(always)]
+    fn gather(&self, all: &[f64], values: &mut Vec<f64>) {
+        let top = padded(self.columns.len());
+        values.clear();
+        values.extend(self.columns.iter().map(|&v| all[v as usize]));
+        values.resize(top, 0.0);
+        values.extend(self.rows.iter().map(|&v| all[v as usize]));
+        values.resize(self.front.rows(), 0.0);
+    }
+
+    /// Puts values where its unknowns are.
+    #[inline(always)]
+    fn scatter(&self, values: &[f64], all: &mut [f64]) {
+        let (above, below) = values.split_at(padded(self.columns.len()));
+        self.columns.iter().zip(above).for_each(|(&v, &value)| all[v as usize] = value);
+        self.rows.iter().zip(below).for_each(|(&v, &value)| all[v as usize] = value);
+    }
+
     /// Adds what is left to a node above; `place` is where each row is there.
     fn add_to(&self, front: &mut Front, place: &[u32]) {
         let places: Vec<usize> = self.rows.iter().map(|&v| place[v as usize] as usize).collect();
