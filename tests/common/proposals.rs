@@ -139,7 +139,6 @@ pub enum Draw {
     /// Any.
     Random(u64),
     /// Always the one that proposals ask for next.
-    #[allow(dead_code)]
     Advised,
 }
 
