@@ -264,8 +264,7 @@ fn subtract<S: Simd>(simd: S, source: Source, from: usize, target: Target) {
     }
     for row in row..count {
         for (j, to) in columns.chunks_exact_mut(rows).enumerate() {
-            let products =
-                source.values.chunks_exact(source.rows).map(|values| values[from + row] * values[from + j]);
+            let products = source.values.chunks_exact(source.rows).map(|values| values[from + row] * values[from + j]);
             to[first + row] -= products.sum::<f64>();
         }
     }
