@@ -24,13 +24,6 @@ const BOUND: f64 = 1e-14;
 /// Which force counts as none, in shares of the largest: a guess with no more than that against its bounds is right.
 const FORCE: f64 = 9e-7;
 
-/// While a guess is wrong, bounds are given up from this share of that force on: what is near the limit would be wrong in
-/// the next round.
-const GIVEN_UP: f64 = 0.4;
-
-/// The same share of that force may come from putting a free weight that has left the range back.
-const PUT_BACK: f64 = 0.1;
-
 /// The same on meshes of at most so many vertices, where rounding allows it and rounds cost nothing.
 const SMALL: usize = 300;
 const FORCE_IF_SMALL: f64 = 1e-11;
@@ -42,6 +35,13 @@ const FORCE_IF_LARGE: f64 = 1e-2;
 
 /// The same where a first guess is all that is wanted.
 const FORCE_OF_ESTIMATE: f64 = 1e-3;
+
+/// While a guess is wrong, bounds are given up from this share of the force that counts as none: what is near the limit would be wrong in
+/// the next round.
+const GIVEN_UP: f64 = 0.4;
+
+/// No more than this share of it may come from putting a free weight that has left the range back.
+const PUT_BACK: f64 = 0.1;
 
 /// Which force counts as rounding, in shares of the diagonal of Q.
 const ROUNDING: f64 = 4e-15;

@@ -92,8 +92,8 @@ impl Front {
     fn block<const N: usize>(&self, first: usize) -> [&[f64]; N] {
         let rows = self.rows();
         let mut columns = [&self.panel[..0]; N];
-        for j in 0..N {
-            columns[j] = &self.panel[(first + j) * rows..(first + j + 1) * rows];
+        for (column, values) in columns.iter_mut().zip(self.panel[first * rows..].chunks_exact(rows)) {
+            *column = values;
         }
         columns
     }
