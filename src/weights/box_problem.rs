@@ -36,8 +36,8 @@ const FORCE_IF_LARGE: f64 = 1e-2;
 /// The same where a first guess is all that is wanted.
 const FORCE_OF_ESTIMATE: f64 = 1e-3;
 
-/// While a guess is wrong, bounds are given up from this share of the force that counts as none: what is near the limit would be wrong in
-/// the next round.
+/// While a guess is wrong, bounds are given up from this share of the force that counts as none: what is near the limit
+/// would be wrong in the next round.
 const GIVEN_UP: f64 = 0.4;
 
 /// No more than this share of it may come from putting a free weight that has left the range back.
