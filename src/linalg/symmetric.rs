@@ -18,6 +18,7 @@ impl Symmetric {
     }
 
     /// The entries of a row: column numbers, rising, and values.
+    #[inline]
     pub fn row(&self, row: usize) -> impl Iterator<Item = (usize, f64)> {
         let range = self.starts[row] as usize..self.starts[row + 1] as usize;
         self.columns[range.clone()].iter().map(|&c| c as usize).zip(self.values[range].iter().copied())
@@ -29,6 +30,7 @@ impl Symmetric {
     }
 
     /// The product of a row with a vector.
+    #[inline]
     pub fn times(&self, row: usize, vector: &[f64]) -> f64 {
         self.row(row).map(|(column, value)| value * vector[column]).sum()
     }

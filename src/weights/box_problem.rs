@@ -141,10 +141,7 @@ impl<'a> Problem<'a> {
             if !self.free_step(column) {
                 return false;
             }
-            if self.is_right(column) {
-                return self.refine(column);
-            }
-            let corrected = self.correct(column, self.members);
+            let corrected = if self.is_right(column) { Vec::new() } else { self.correct(column, self.members) };
             match corrected.len() {
                 0 => return self.refine(column),
                 corrections if corrections < least => (least, since) = (corrections, 0),

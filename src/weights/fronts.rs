@@ -32,14 +32,13 @@ pub fn follow(problem: &mut Problem, column: &mut Column, mut corrected: Vec<u32
                 State::Free | State::Fixed => {}
             }
         }
-        let window = around(problem, corrected, REACH);
+        let (felt, within) = around(problem, corrected);
         let is_free = |v: &&u32| column.states[**v as usize] == State::Free;
-        let mut free: Vec<u32> = window.iter().filter(is_free).copied().collect();
+        let mut free: Vec<u32> = felt[..within].iter().filter(is_free).copied().collect();
         free.sort_unstable();
         measure(problem, column, &free);
         let Some(step) = solver.step(&free, &problem.forces) else { return };
         free.iter().zip(&step).for_each(|(&v, &d)| column.weights[v as usize] += d);
-        let felt = around(problem, window, TIED);
         let held: Vec<u32> = felt.iter().filter(|v| column.states[**v as usize] != State::Free).copied().collect();
         measure(problem, column, &held);
         corrected = problem.correct(column, &felt);
@@ -56,11 +55,12 @@ fn measure(problem: &mut Problem, column: &Column, vertices: &[u32]) {
     }
 }
 
-/// A set with everything within `reach` edges.
-fn around(problem: &mut Problem, mut set: Vec<u32>, reach: usize) -> Vec<u32> {
+/// Everything within [`REACH`] of a set, and then what else is [`TIED`] to that; and how many the former are.
+fn around(problem: &mut Problem, mut set: Vec<u32>) -> (Vec<u32>, usize) {
     set.iter().for_each(|&v| problem.marks[v as usize] = true);
-    let mut from = 0;
-    for _ in 0..reach {
+    // Where the outermost ring begins, and the end of every ring.
+    let (mut from, mut ends) = (0, Vec::new());
+    for _ in 0..REACH + TIED {
         let end = set.len();
         for i in from..end {
             for (u, _) in problem.quadratic.laplacian.row(set[i] as usize) {
@@ -70,7 +70,8 @@ fn around(problem: &mut Problem, mut set: Vec<u32>, reach: usize) -> Vec<u32> {
             }
         }
         from = end;
+        ends.push(set.len());
     }
     set.iter().for_each(|&v| problem.marks[v as usize] = false);
-    set
+    (set, ends[REACH - 1])
 }

@@ -47,6 +47,7 @@ impl Front {
     }
 
     /// Where a column of the rest lies in it, from the first row that it has on, and which row that is.
+    #[inline]
     pub fn rest_column(&self, column: usize) -> (Range<usize>, usize) {
         let (side, first) = (padded(self.below), column - column % TILE);
         let rows = side - first;
