@@ -2,8 +2,9 @@
 
 use glam::DVec3;
 use sinew::sequence::{Pose, Sequence};
-use std::io::{Read, Seek};
+use std::fs::File;
 use std::path::{Path, PathBuf};
+use zip::ZipArchive;
 
 /// The folder with data to measure with, where there is one; else a sentence is printed that says what is left out.
 pub fn data(left_out: &str) -> Option<PathBuf> {
@@ -18,7 +19,7 @@ pub fn data(left_out: &str) -> Option<PathBuf> {
 /// Reads a sequence.
 #[allow(dead_code)]
 pub fn sequence(path: &Path) -> Sequence {
-    let mut archive = npyz::npz::NpzArchive::open(path).expect("a NumPy archive");
+    let mut archive = open(path);
     let points = |(values, _): (Vec<f64>, _)| -> Vec<DVec3> { values.chunks_exact(3).map(DVec3::from_slice).collect() };
     let reference = points(array(&mut archive, "rest"));
     let frames = points(array(&mut archive, "frames"));
@@ -37,7 +38,7 @@ pub fn sequence(path: &Path) -> Sequence {
 /// #F true parts from the (V, bones) skinning weights in `path`: the bone with the largest sum over a face's corners.
 #[allow(dead_code)]
 pub fn true_parts(path: &Path, faces: &[[u32; 3]]) -> Vec<u32> {
-    let mut archive = npyz::npz::NpzArchive::open(path).expect("a NumPy archive");
+    let mut archive = open(path);
     let (weights, shape) = array(&mut archive, "W");
     let bones = shape[1];
     let sum = |face: &[u32; 3], bone: usize| face.iter().map(|&v| weights[v as usize * bones + bone]).sum::<f64>();
@@ -45,9 +46,15 @@ pub fn true_parts(path: &Path, faces: &[[u32; 3]]) -> Vec<u32> {
     faces.iter().map(largest).collect()
 }
 
+/// NumPy's archives are ZIP archives with a file for each array.
+fn open(path: &Path) -> ZipArchive<File> {
+    ZipArchive::new(File::open(path).expect("a file")).expect("a NumPy archive")
+}
+
 /// An array in row-major order, and its shape.
-fn array<R: Read + Seek>(archive: &mut npyz::npz::NpzArchive<R>, name: &str) -> (Vec<f64>, Vec<usize>) {
-    let npy = archive.by_name(name).expect("a readable archive").expect("an array of that name");
+fn array(archive: &mut ZipArchive<File>, name: &str) -> (Vec<f64>, Vec<usize>) {
+    let file = archive.by_name(&format!("{name}.npy")).expect("an array of that name");
+    let npy = npyz::NpyFile::new(file).expect("a NumPy array");
     let shape: Vec<usize> = npy.shape().iter().map(|&n| n as usize).collect();
     let by_columns = npy.header().order() == npyz::Order::Fortran;
     let kind = npy.dtype().descr();
@@ -88,5 +95,5 @@ pub fn numbers(path: &Path, name: &str) -> Vec<u32> {
 /// An array, row by row.
 #[allow(dead_code)]
 pub fn values(path: &Path, name: &str) -> Vec<f64> {
-    array(&mut npyz::npz::NpzArchive::open(path).expect("a NumPy archive"), name).0
+    array(&mut open(path), name).0
 }
