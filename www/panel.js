@@ -9,8 +9,12 @@ export function panel(host, app, above) {
   show(host, close, above, ...bodies.values());
   const open = iconButton('panel', 'Show the panel (P)', () => app.setPanel(true), { class: 'icon-button panel-opener' });
   host.after(open);
+  let shown = app.step;
   const update = () => {
     for (const [id, body] of bodies) body.hidden = id !== app.step;
+    // Another step is read from its beginning, however far down the one before it was.
+    if (shown !== app.step) host.scrollTop = 0;
+    shown = app.step;
     host.setAttribute('aria-label', STEPS.find(({ id }) => id === app.step).title);
     host.hidden = !app.panel;
     open.hidden = app.panel;

@@ -44,6 +44,10 @@ fn everything_has_its_place_on_a_phone() {
     page.rest(0.4);
     page.screenshot("sheet");
     nothing_clashes(&mut page, "with the sheet");
+    assert_eq!(page.evaluate("panel.scrollTop = 100, panel.scrollTop"), 100, "there is more than fits");
+    page.evaluate("document.querySelectorAll('.step-button')[1].click()");
+    page.wait_until("sinew.state().step === 'parts'", 2.0);
+    assert_eq!(page.evaluate("panel.scrollTop"), 0, "a step is read from its beginning");
     page.click("#panel .icon-button");
     page.wait_until("!sinew.state().panel", 2.0);
 }
