@@ -1,5 +1,5 @@
-//! The search from stage to stage: points are added, exchanged, replaced and moved on one coarse mesh, and moved once
-//! more and put in order on a finer one.
+//! The search from stage to stage: points are added, exchanged, replaced and moved on one coarse mesh, and moved and
+//! replaced once more and put in order on a finer one.
 //!
 //! Adding the best and then replacing one at a time (§3.5) ends where the first points happen to lead. More points than
 //! wanted and then fewer again (P. Pudil, J. Novovičová, J. Kittler. *Floating search methods in feature selection*.
@@ -88,7 +88,11 @@ pub fn run(found: &[u32], full: &Full, parameters: &Parameters, watch: &mut Watc
         kept.extend(others);
         let finer = Coarse::new(surface, &kept, &poses, COARSE[1], gammas);
         let mut last = Search::from_points(&finer, parameters.fit(), &finer.candidates[..count]);
-        in_turn(&mut last, Search::shift, [0.65, 0.75], &finer, &mut trail, watch)?;
+        watch.begin("settling points", 0.65)?;
+        in_turn(&mut last, Search::shift, [0.65, 0.69], &finer, &mut trail, watch)?;
+        last.probe();
+        in_turn(&mut last, Search::replace, [0.69, 0.72], &finer, &mut trail, watch)?;
+        in_turn(&mut last, Search::shift, [0.72, 0.75], &finer, &mut trail, watch)?;
         watch.begin("ordering points", 0.75)?;
         let (order, estimates) = last.order(&mut || watch.go_on(0.78)).ok_or(KeyPointError::Cancelled)?;
         let points: Vec<u32> = order.into_iter().map(|m| trail.name(&finer, m)).collect();
