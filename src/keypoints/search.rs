@@ -132,7 +132,7 @@ impl<'a> Search<'a> {
         let probes = self.released(place);
         let candidates: Vec<(u32, &Field)> = self.coarse.candidates.iter().copied().zip(&probes).collect();
         let best = self.instead(place, &candidates, REPLACING, keep_going)?;
-        Some(self.accept_instead(place, best, probes))
+        Some(self.accept_instead(place, best, Some(probes)))
     }
 
     /// Tries to move the point at `place` to a vertex near it; whether that was for the better, or `None` on no wish to go
@@ -143,8 +143,7 @@ impl<'a> Search<'a> {
         let fields = self.coarse.energy.fields_like(&near, &zeros, &self.set.fields[place], &mut self.scratch);
         let near: Vec<(u32, &Field)> = near.iter().copied().zip(&fields).filter(|(_, f)| !f.value.is_empty()).collect();
         let best = self.instead(place, &near, MOVING, keep_going)?;
-        let probes = self.released(place);
-        Some(self.accept_instead(place, best, probes))
+        Some(self.accept_instead(place, best, None))
     }
 
     /// The best of others, with estimates of their fields, in place of the point at `place`.
@@ -161,10 +160,12 @@ impl<'a> Search<'a> {
         Some(best.map(|best| self.regrouped(best)))
     }
 
-    /// Takes a set over, whose last point replaces that at `place`, if it is better.
-    fn accept_instead(&mut self, place: usize, best: Option<Set>, probes: Vec<Field>) -> bool {
+    /// Takes a set over, whose last point replaces that at `place`, if it is better. `probes` are those without the point at
+    /// `place`, if they are known.
+    fn accept_instead(&mut self, place: usize, best: Option<Set>, probes: Option<Vec<Field>>) -> bool {
         let enough = self.set.error * (1.0 - WORTH) - ROUNDING;
         let Some(mut best) = best.filter(|best| best.error < enough) else { return false };
+        let probes = probes.unwrap_or_else(|| self.released(place));
         // The new point takes the place of the old one.
         best.members[place..].rotate_right(1);
         best.fields[place..].rotate_right(1);

@@ -18,6 +18,9 @@ use super::{Parameters, Stop};
 /// Vertices of the coarse mesh on which sets are sought, and of the one on which they are settled.
 const COARSE: [usize; 2] = [600, 900];
 
+/// Candidates that are tried again on the finer mesh: the first that were found, which lie all over.
+const AGAIN: usize = 60;
+
 /// Points that are added and taken away again, and how often at most.
 const MORE: usize = 3;
 const EXCHANGES: usize = 2;
@@ -84,7 +87,7 @@ pub fn run(found: &[u32], full: &Full, parameters: &Parameters, watch: &mut Watc
         in_turn(&mut search, Search::shift, [0.55, 0.65], &coarse, &mut trail, watch)?;
         let count = search.set.members.len();
         let mut kept: Vec<u32> = search.set.members.iter().map(|&m| coarse.surface.origin[m as usize]).collect();
-        let others: Vec<u32> = found.iter().copied().filter(|v| !kept.contains(v)).collect();
+        let others: Vec<u32> = found.iter().copied().filter(|v| !kept.contains(v)).take(AGAIN).collect();
         kept.extend(others);
         let finer = Coarse::new(surface, &kept, &poses, COARSE[1], gammas);
         let mut last = Search::from_points(&finer, parameters.fit(), &finer.candidates[..count]);
