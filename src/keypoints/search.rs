@@ -23,7 +23,7 @@ use glam::DVec3;
 const ADDING: [usize; 2] = [20, 3];
 
 /// The same when one is replaced.
-const REPLACING: [usize; 2] = [12, 2];
+const REPLACING: [usize; 2] = [8, 1];
 
 /// The same when one is moved to a vertex at most so many edges away.
 const MOVING: [usize; 2] = [4, 1];

@@ -94,8 +94,11 @@ pub fn run(found: &[u32], full: &Full, parameters: &Parameters, watch: &mut Watc
         watch.begin("settling points", 0.65)?;
         in_turn(&mut last, Search::shift, [0.65, 0.69], &finer, &mut trail, watch)?;
         last.probe();
+        let before = last.set.error;
         in_turn(&mut last, Search::replace, [0.69, 0.72], &finer, &mut trail, watch)?;
-        in_turn(&mut last, Search::shift, [0.72, 0.75], &finer, &mut trail, watch)?;
+        if last.set.error < before {
+            in_turn(&mut last, Search::shift, [0.72, 0.75], &finer, &mut trail, watch)?;
+        }
         watch.begin("ordering points", 0.75)?;
         let (order, estimates) = last.order(&mut || watch.go_on(0.78)).ok_or(KeyPointError::Cancelled)?;
         let points: Vec<u32> = order.into_iter().map(|m| trail.name(&finer, m)).collect();
