@@ -1,5 +1,8 @@
 //! How long the choice of key points takes, and a pose's fit: natively, on one core, against the paper's letter in the
 //! same run. The letter takes minutes and so runs once.
+//!
+//! `cargo bench --bench keypoints -- starts dog octopus FILE.npz …` tells instead how much ten starts differ on creatures
+//! and sequences of your choice.
 
 #[path = "../tests/common/npz.rs"]
 mod npz;
@@ -13,20 +16,30 @@ use sinew::observer::Silent;
 use sinew::sequence::Sequence;
 use sinew::skinning::{Fitter, Rig, Rows};
 use sinew::zoo::{self, Recipe};
+use std::path::Path;
 
 /// Vertices, poses and points of the comparison.
 const VERTICES: usize = 2_500;
 const POINTS: usize = 12;
 
+/// Ten poses of a made creature of about so many faces.
+fn made(name: &str, faces: usize) -> Sequence {
+    let recipe = Recipe { name: name.into(), faces, poses: 10, exact: false, ..Recipe::default() };
+    zoo::make(&recipe).expect("a creature of that name").sequence
+}
+
+/// A sequence from an archive, or a made creature.
+fn named(name: &str) -> Sequence {
+    let path = Path::new(name);
+    let is_archive = path.extension().is_some_and(|end| end == "npz");
+    thinned(&if is_archive { npz::sequence(path) } else { made(name, 2 * VERTICES) }, VERTICES)
+}
+
 /// Ten poses of a horse, where the data is at hand, else of a made one.
 fn horse() -> Sequence {
-    let made = || {
-        let recipe = Recipe { name: "horse".into(), faces: 16_843, poses: 10, exact: false, ..Recipe::default() };
-        zoo::make(&recipe).expect("a creature of that name").sequence
-    };
     let whole = match npz::data("the public horse; a made one is measured instead") {
         Some(data) => npz::sequence(&data.join("sumner/horse.npz")),
-        None => made(),
+        None => made("horse", 16_843),
     };
     thinned(&whole, VERTICES)
 }
@@ -78,11 +91,11 @@ fn a_pose(criterion: &mut Criterion, horse: &Sequence, parameters: &Parameters) 
     });
 }
 
-fn starts(horse: &Sequence, parameters: &Parameters) {
-    let error = |seed| last(&run(horse, &Parameters { seed, ..parameters.clone() }).1);
+fn starts(name: &str, sequence: &Sequence, parameters: &Parameters) {
+    let error = |seed| last(&run(sequence, &Parameters { seed, ..parameters.clone() }).1);
     let errors: Vec<f64> = (0..10).map(error).collect();
     let (low, high) = errors.iter().fold((f64::INFINITY, 0.0_f64), |(l, h), &e| (l.min(e), h.max(e)));
-    println!("ten starts: errors {errors:.5?}, the worst {:.1} % above the best", 100.0 * (high / low - 1.0));
+    println!("{name}, ten starts: errors {errors:.5?}, the worst {:.1} % above the best", 100.0 * (high / low - 1.0));
 }
 
 fn against_the_letter(horse: &Sequence, parameters: &Parameters) {
@@ -104,12 +117,17 @@ fn against_the_letter(horse: &Sequence, parameters: &Parameters) {
 }
 
 fn main() {
-    let horse = horse();
     let parameters = Parameters { points: Some(POINTS), ..Parameters::default() };
+    let arguments: Vec<String> = std::env::args().skip(1).filter(|argument| !argument.starts_with('-')).collect();
+    if let Some(("starts", names)) = arguments.split_first().map(|(first, names)| (first.as_str(), names)) {
+        names.iter().for_each(|name| starts(name, &named(name), &parameters));
+        return;
+    }
+    let horse = horse();
     let mut criterion = Criterion::default().configure_from_args();
     by_criterion(&mut criterion, &horse, &parameters);
     a_pose(&mut criterion, &horse, &parameters);
     criterion.final_summary();
-    starts(&horse, &parameters);
+    starts("horse", &horse, &parameters);
     against_the_letter(&horse, &parameters);
 }

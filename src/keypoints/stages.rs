@@ -1,5 +1,5 @@
-//! The search from stage to stage: points are added, exchanged, replaced and moved on one coarse mesh, and moved and
-//! replaced once more and put in order on a finer one.
+//! The search from stage to stage: points are added, exchanged, replaced and moved on one coarse mesh, and moved once
+//! more and put in order on a finer one.
 //!
 //! Adding the best and then replacing one at a time (§3.5) ends where the first points happen to lead. More points than
 //! wanted and then fewer again (P. Pudil, J. Novovičová, J. Kittler. *Floating search methods in feature selection*.
@@ -17,9 +17,6 @@ use super::{Parameters, Stop};
 
 /// Vertices of the coarse mesh on which sets are sought, and of the one on which they are settled.
 const COARSE: [usize; 2] = [600, 900];
-
-/// Candidates that are tried again on the finer mesh: the first that were found, which lie all over.
-const AGAIN: usize = 60;
 
 /// Points that are added and taken away again, and how often at most.
 const MORE: usize = 3;
@@ -87,18 +84,11 @@ pub fn run(found: &[u32], full: &Full, parameters: &Parameters, watch: &mut Watc
         in_turn(&mut search, Search::shift, [0.55, 0.65], &coarse, &mut trail, watch)?;
         let count = search.set.members.len();
         let mut kept: Vec<u32> = search.set.members.iter().map(|&m| coarse.surface.origin[m as usize]).collect();
-        let others: Vec<u32> = found.iter().copied().filter(|v| !kept.contains(v)).take(AGAIN).collect();
+        let others: Vec<u32> = found.iter().copied().filter(|v| !kept.contains(v)).collect();
         kept.extend(others);
         let finer = Coarse::new(surface, &kept, &poses, COARSE[1], gammas);
         let mut last = Search::from_points(&finer, parameters.fit(), &finer.candidates[..count]);
-        watch.begin("settling points", 0.65)?;
-        in_turn(&mut last, Search::shift, [0.65, 0.69], &finer, &mut trail, watch)?;
-        last.probe();
-        let before = last.set.error;
-        in_turn(&mut last, Search::replace, [0.69, 0.72], &finer, &mut trail, watch)?;
-        if last.set.error < before {
-            in_turn(&mut last, Search::shift, [0.72, 0.75], &finer, &mut trail, watch)?;
-        }
+        in_turn(&mut last, Search::shift, [0.65, 0.75], &finer, &mut trail, watch)?;
         watch.begin("ordering points", 0.75)?;
         let (order, estimates) = last.order(&mut || watch.go_on(0.78)).ok_or(KeyPointError::Cancelled)?;
         let points: Vec<u32> = order.into_iter().map(|m| trail.name(&finer, m)).collect();
