@@ -15,7 +15,9 @@
 //! share `hold` of what the handle moves: its arms take part in the energy like edges of the handle's group, and its
 //! centre is drawn to where the pose has it. The energy falls as before.
 
+use super::assembly::{Assembly, Group};
 use super::factor::Factor;
+use super::functions::{Axes, Functions, as_axes, as_rows};
 use super::rows::Rows;
 use crate::linalg::polar;
 use crate::linalg::rigid_fit::{Moments, RigidMotion};
@@ -91,25 +93,17 @@ pub struct Fitter {
     points: Vec<DVec3>,
     mass: Vec<f64>,
     total: f64,
-    rows: Rows,
+    functions: Functions,
     handles: Vec<u32>,
     at: Vec<DVec3>,
     /// Weight of each handle's cross.
     hold: Vec<f64>,
     factor: Factor,
     groups: Vec<Group>,
+    /// `Y_g = A⁻¹ K_g` of every group, 4h × 3.
+    answers: Vec<Vec<[f64; 3]>>,
     /// (3 #G)² row-major: `Kᵀ A⁻¹ K`.
     coupling: Vec<f64>,
-}
-
-/// What a group of edges says about its rotation.
-#[derive(Clone)]
-struct Group {
-    /// 4h × 3.
-    k: Vec<[f64; 3]>,
-    /// A⁻¹ K.
-    y: Vec<[f64; 3]>,
-    p: DMat3,
 }
 
 /// A pose brought next to the reference: what does not depend on handles.
@@ -171,19 +165,17 @@ impl Fitter {
         }
         let floor = parameters.hold * LIKE_VERTICES * 1e-6;
         hold.iter_mut().for_each(|h| *h = h.max(floor));
-        let count = rig.groups.iter().max().map_or(1, |&g| g as usize + 1);
-        let mut assembly = Assembly::new(4 * at.len(), count);
-        assembly.add_vertices(&points, &mass, rig.weights, &at);
-        assembly.add_edges(rig, &points, &at, parameters.lambda);
-        assembly.add_crosses(rig, &hold);
-        let factor = Factor::new(assembly.a, 4 * at.len());
-        let mut groups = assembly.groups;
-        for group in &mut groups {
-            group.y.clone_from(&group.k);
-            factor.solve(&mut group.y);
-        }
-        let coupling = coupling(&groups);
-        let (rows, handles) = (rig.weights.clone(), rig.handles.to_vec());
+        let functions = Functions::new(rig.weights, &points, &at);
+        let Assembly { a, groups } = Assembly::new(rig, &functions, &points, &mass, &hold, parameters.lambda);
+        let factor = Factor::new(a, 4 * at.len());
+        let answer = |group: &Group| {
+            let mut y = group.k.clone();
+            factor.solve(&mut y);
+            y
+        };
+        let answers: Vec<_> = groups.iter().map(answer).collect();
+        let coupling = coupling(&groups, &answers);
+        let handles = rig.handles.to_vec();
         let total = mass.iter().sum();
         Self {
             parameters: *parameters,
@@ -192,12 +184,13 @@ impl Fitter {
             points,
             mass,
             total,
-            rows,
+            functions,
             handles,
             at,
             hold,
             factor,
             groups,
+            answers,
             coupling,
         }
     }
@@ -240,24 +233,21 @@ impl Fitter {
     /// What a pose says to the handles.
     fn target(&self, placed: &Placed) -> Target {
         let displacements = &placed.displacements;
-        let mut c = vec![[0.0; 3]; 4 * self.at.len()];
+        let mut c = vec![Axes::default(); self.at.len()];
         let mut constant = 0.0;
         for (v, (&m, &d)) in self.mass.iter().zip(displacements).enumerate() {
             if m <= 0.0 {
                 continue;
             }
             constant += m * d.length_squared();
-            for (k, w) in self.rows.entries(v) {
-                let k = k as usize;
-                let local = self.points[v] - self.at[k];
-                add_outer(&mut c[4 * k..4 * k + 4], m * w, local, d);
-            }
+            self.functions.spread(v, m * d, &mut c);
         }
         for (k, (&v, &hold)) in self.handles.iter().zip(&self.hold).enumerate() {
             let d = displacements[v as usize];
             constant += hold * d.length_squared();
-            (0..3).for_each(|i| c[4 * k + 3][i] += hold * d[i]);
+            (0..3).for_each(|axis| c[k][axis][3] += hold * d[axis]);
         }
+        let c = as_rows(&c);
         let mut x = c.clone();
         self.factor.solve(&mut x);
         constant -= c.iter().flatten().zip(x.iter().flatten()).map(|(a, b)| a * b).sum::<f64>();
@@ -320,8 +310,8 @@ impl Fitter {
 
     fn solution(&self, target: &Target, turns: &[DMat3]) -> Vec<[f64; 3]> {
         let mut x = target.x.clone();
-        for (group, turn) in self.groups.iter().zip(turns) {
-            for (row, y) in x.iter_mut().zip(&group.y) {
+        for (answer, turn) in self.answers.iter().zip(turns) {
+            for (row, y) in x.iter_mut().zip(answer) {
                 let add = turn.transpose() * DVec3::from_array(*y);
                 (0..3).for_each(|i| row[i] += add[i]);
             }
@@ -331,17 +321,13 @@ impl Fitter {
 
     /// Mean distance between `Φ X` and the displacements, in unit-sphere radii.
     fn error(&self, placed: &Placed, x: &[[f64; 3]]) -> f64 {
+        let x = as_axes(x);
         let mut sum = 0.0;
         for (v, (&m, &wanted)) in self.mass.iter().zip(&placed.displacements).enumerate() {
             if m <= 0.0 {
                 continue;
             }
-            let mut d = -wanted;
-            for (k, w) in self.rows.entries(v) {
-                let k = k as usize;
-                d += w * applied(&x[4 * k..4 * k + 4], self.points[v] - self.at[k]);
-            }
-            sum += m * d.length();
+            sum += m * self.functions.at(v, &x).distance(wanted);
         }
         if self.total > 0.0 { sum / self.total } else { 0.0 }
     }
@@ -362,119 +348,8 @@ impl Fitter {
     }
 }
 
-/// The sums over vertices and edges.
-struct Assembly {
-    n: usize,
-    a: Vec<f64>,
-    groups: Vec<Group>,
-}
-
-impl Assembly {
-    fn new(n: usize, groups: usize) -> Self {
-        let group = Group { k: vec![[0.0; 3]; n], y: Vec::new(), p: DMat3::ZERO };
-        Self { n, a: vec![0.0; n * n], groups: vec![group; groups] }
-    }
-
-    /// `Φᵀ M Φ`.
-    fn add_vertices(&mut self, points: &[DVec3], mass: &[f64], weights: &Rows, at: &[DVec3]) {
-        let mut row = Vec::new();
-        for (v, &m) in mass.iter().enumerate() {
-            if m > 0.0 {
-                row.clear();
-                row.extend(weights.entries(v).map(|(k, w)| (k, scaled(w, points[v] - at[k as usize]))));
-                self.add_square(&row, m);
-            }
-        }
-    }
-
-    /// `λ Φᵀ L Φ` and the groups; an edge counts half in the group of each of its ends.
-    fn add_edges(&mut self, rig: &Rig, points: &[DVec3], at: &[DVec3], lambda: f64) {
-        let mut row = Vec::new();
-        for (&[i, j], &stiffness) in rig.edges.iter().zip(rig.stiffness) {
-            let weight = lambda * stiffness;
-            if !(weight > 0.0 && weight.is_finite()) {
-                continue;
-            }
-            let [a, b] = [i as usize, j as usize];
-            difference(rig.weights, [a, b], [points[a], points[b]], at, &mut row);
-            self.add_square(&row, weight);
-            let e = points[a] - points[b];
-            for end in [a, b] {
-                let group = &mut self.groups[rig.groups[end] as usize];
-                group.p += outer(e * (0.5 * weight), e);
-                for (k, f) in &row {
-                    let k = 4 * *k as usize;
-                    for (row, f) in group.k[k..k + 4].iter_mut().zip(f) {
-                        (0..3).for_each(|c| row[c] += 0.5 * weight * f * e[c]);
-                    }
-                }
-            }
-        }
-    }
-
-    /// The handles' crosses.
-    fn add_crosses(&mut self, rig: &Rig, hold: &[f64]) {
-        for (k, (&v, &hold)) in rig.handles.iter().zip(hold).enumerate() {
-            let group = &mut self.groups[rig.groups[v as usize] as usize];
-            group.p += DMat3::from_diagonal(DVec3::splat(hold));
-            for axis in 0..3 {
-                group.k[4 * k + axis][axis] += hold;
-            }
-            for i in 4 * k..4 * k + 4 {
-                self.a[i * self.n + i] += hold;
-            }
-        }
-    }
-
-    /// Adds `weight φ φᵀ` to the lower triangle.
-    fn add_square(&mut self, row: &[(u32, [f64; 4])], weight: f64) {
-        for (r, (k, f)) in row.iter().enumerate() {
-            for (l, g) in &row[..=r] {
-                for (i, f) in f.iter().enumerate() {
-                    let from = (4 * *k as usize + i) * self.n + 4 * *l as usize;
-                    let wf = weight * f;
-                    self.a[from..from + 4].iter_mut().zip(g).for_each(|(a, g)| *a += wf * g);
-                }
-            }
-        }
-    }
-}
-
-/// `φ_i − φ_j`, merged from two rows that are in the order of handles.
-fn difference(rows: &Rows, [a, b]: [usize; 2], points: [DVec3; 2], at: &[DVec3], row: &mut Vec<(u32, [f64; 4])>) {
-    row.clear();
-    row.extend(rows.entries(a).map(|(k, w)| (k, scaled(w, points[0] - at[k as usize]))));
-    let mut place = 0;
-    for (k, w) in rows.entries(b) {
-        while row.get(place).is_some_and(|r| r.0 < k) {
-            place += 1;
-        }
-        let other = scaled(-w, points[1] - at[k as usize]);
-        match row.get_mut(place) {
-            Some(r) if r.0 == k => (0..4).for_each(|i| r.1[i] += other[i]),
-            _ => row.insert(place, (k, other)),
-        }
-    }
-}
-
-fn scaled(w: f64, p: DVec3) -> [f64; 4] {
-    [w * p.x, w * p.y, w * p.z, w]
-}
-
 fn outer(a: DVec3, b: DVec3) -> DMat3 {
     DMat3::from_cols(a * b.x, a * b.y, a * b.z)
-}
-
-fn add_outer(rows: &mut [[f64; 3]], weight: f64, local: DVec3, d: DVec3) {
-    let f = scaled(weight, local);
-    for (row, f) in rows.iter_mut().zip(f) {
-        (0..3).for_each(|i| row[i] += f * d[i]);
-    }
-}
-
-fn applied(x: &[[f64; 3]], local: DVec3) -> DVec3 {
-    let [a, b, c, d] = [0, 1, 2, 3].map(|i| DVec3::from_array(x[i]));
-    a * local.x + b * local.y + c * local.z + d
 }
 
 /// `kᵀ x` of two n × 3 matrices.
@@ -486,15 +361,18 @@ fn transposed_product(k: &[[f64; 3]], x: &[[f64; 3]]) -> DMat3 {
     sum
 }
 
-fn coupling(groups: &[Group]) -> Vec<f64> {
+/// `Kᵀ A⁻¹ K`, which is symmetric.
+fn coupling(groups: &[Group], answers: &[Vec<[f64; 3]>]) -> Vec<f64> {
     let n = 3 * groups.len();
     let mut coupling = vec![0.0; n * n];
     for (g, group) in groups.iter().enumerate() {
-        for (h, other) in groups.iter().enumerate() {
-            let block = transposed_product(&group.k, &other.y).to_cols_array_2d();
+        for (h, answer) in answers.iter().enumerate().take(g + 1) {
+            let block = transposed_product(&group.k, answer).to_cols_array_2d();
             for (j, column) in block.iter().enumerate() {
-                for (i, value) in column.iter().enumerate() {
-                    coupling[(3 * g + i) * n + 3 * h + j] = *value;
+                for (i, &value) in column.iter().enumerate() {
+                    let (row, column) = (3 * g + i, 3 * h + j);
+                    coupling[row * n + column] = value;
+                    coupling[column * n + row] = value;
                 }
             }
         }

@@ -16,9 +16,11 @@
 //! The second equation of Eq. 18 is *not* stacked below the first: that would minimise another energy, one in which the
 //! Laplacian is squared. Here `E = λ E_arap + E_diff` itself falls with every round.
 
+mod assembly;
 mod clusters;
 pub(crate) mod factor;
 mod fitter;
+mod functions;
 mod gradients;
 mod rows;
 
