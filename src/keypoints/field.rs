@@ -9,10 +9,13 @@
 //! Hintermüller, Kazufumi Ito, Karl Kunisch. The primal-dual active set strategy as a semismooth Newton method. SIAM
 //! Journal on Optimization 13(3), 2002.
 
+use crate::linalg::envelope::Envelope;
 use crate::mesh::laplacian::Laplacian;
 
-/// Rounds of mending; vertices are set free only in the first half of them, so that no cycle lasts.
+/// Rounds of mending, for a field and for an estimate of one; vertices are set free only in the first half of them, so that
+/// no cycle lasts.
 const ROUNDS: usize = 8;
+const ROUNDS_OF_ESTIMATE: usize = 3;
 
 /// Vertices are held if they are below minus this, and let go if they alone would rise by this share of it.
 const SLACK: f64 = 1e-3;
@@ -65,14 +68,15 @@ impl Field {
     }
 }
 
-/// Room to work in.
+/// Room to work in with one energy.
 #[derive(Default)]
 pub struct Scratch {
     place: Vec<u32>,
     free: Vec<u32>,
-    first: Vec<u32>,
-    at: Vec<usize>,
-    band: Vec<f64>,
+    /// What was free the last time.
+    before: Vec<u32>,
+    first: Vec<usize>,
+    matrix: Envelope,
     x: Vec<f64>,
 }
 
@@ -145,6 +149,15 @@ impl Energy {
 
     /// The field that is 1 at `one` and 0 at `zeros` and on other pieces; `before` is a similar one to start from.
     pub fn field(&self, one: u32, zeros: &[u32], before: Option<&Field>, scratch: &mut Scratch) -> Field {
+        self.mended(one, zeros, before, ROUNDS, scratch)
+    }
+
+    /// An estimate of the same field, in less time.
+    pub fn estimate(&self, one: u32, zeros: &[u32], scratch: &mut Scratch) -> Field {
+        self.mended(one, zeros, None, ROUNDS_OF_ESTIMATE, scratch)
+    }
+
+    fn mended(&self, one: u32, zeros: &[u32], before: Option<&Field>, rounds: usize, scratch: &mut Scratch) -> Field {
         let n = self.len();
         let mut field = match before {
             Some(before) => before.clone(),
@@ -166,9 +179,9 @@ impl Energy {
         }
         scratch.place[one as usize] = FIXED;
         field.value[one as usize] = 1.0;
-        for round in 0..ROUNDS {
+        for round in 0..rounds {
             self.solve(&mut field, scratch);
-            let changed = self.mend(&mut field, scratch, 2 * round < ROUNDS);
+            let changed = self.mend(&mut field, scratch, 2 * round < rounds);
             if !changed {
                 break;
             }
@@ -200,8 +213,8 @@ impl Energy {
     /// The least energy over the free vertices.
     fn solve(&self, field: &mut Field, scratch: &mut Scratch) {
         self.assemble(field, scratch);
-        scratch.factor();
-        scratch.solve();
+        scratch.matrix.factor();
+        scratch.matrix.solve(&mut scratch.x);
         for (&v, &x) in scratch.free.iter().zip(&scratch.x) {
             field.value[v as usize] = if x.is_finite() { x } else { 0.0 };
         }
@@ -210,7 +223,8 @@ impl Energy {
     /// The system over the free vertices.
     #[allow(clippy::needless_range_loop, reason = "v walks several arrays at once")]
     fn assemble(&self, field: &mut Field, scratch: &mut Scratch) {
-        let Scratch { place, free, first, at, band, x } = scratch;
+        let Scratch { place, free, before, first, matrix, x } = scratch;
+        std::mem::swap(free, before);
         free.clear();
         for v in 0..self.len() {
             if place[v] == FIXED {
@@ -225,31 +239,30 @@ impl Energy {
             }
         }
         first.clear();
-        at.clear();
-        at.push(0);
-        band.clear();
         x.clear();
         for (i, &v) in free.iter().enumerate() {
             let mut b = 0.0;
-            let mut begin = i as u32;
+            let mut begin = i;
             for (w, q) in self.row(v as usize) {
                 match place[w as usize] {
                     FREE => {}
                     FIXED => b -= q * field.value[w as usize],
-                    j => begin = begin.min(j),
-                }
-            }
-            let from = band.len();
-            band.resize(from + (i - begin as usize) + 1, 0.0);
-            for (w, q) in self.row(v as usize) {
-                let j = place[w as usize];
-                if j != FREE && j != FIXED && j as usize <= i {
-                    band[from + (j - begin) as usize] = q;
+                    j => begin = begin.min(j as usize),
                 }
             }
             first.push(begin);
-            at.push(band.len());
             x.push(b);
+        }
+        // Rows depend on nothing but what is free.
+        let same = free.iter().zip(&*before).take_while(|(a, b)| a == b).count();
+        let from = matrix.reset(first, same);
+        for (i, &v) in free.iter().enumerate().skip(from) {
+            for (w, q) in self.row(v as usize) {
+                let j = place[w as usize];
+                if j != FREE && j != FIXED && j as usize <= i {
+                    matrix.set(i, j as usize, q);
+                }
+            }
         }
     }
 
@@ -268,7 +281,7 @@ impl Energy {
             }
         }
         self.assemble(&mut field, scratch);
-        scratch.factor();
+        scratch.matrix.factor();
         let one = |&one: &u32| {
             let at = scratch.place[one as usize] as usize;
             if at >= scratch.free.len() {
@@ -276,7 +289,7 @@ impl Energy {
             }
             scratch.x.fill(0.0);
             scratch.x[at] = 1.0;
-            scratch.solve();
+            scratch.matrix.solve(&mut scratch.x);
             let top = scratch.x[at];
             let mut field = Field { value: vec![0.0; n], held: vec![true; n] };
             for (&v, x) in scratch.free.iter().zip(&scratch.x) {
@@ -293,61 +306,6 @@ impl Energy {
 
 const FREE: u32 = u32::MAX;
 const FIXED: u32 = u32::MAX - 1;
-
-/// Cholesky in an envelope: row i holds columns `first[i]..=i` from `at[i]` on.
-impl Scratch {
-    fn factor(&mut self) {
-        let Self { first, at, band, .. } = self;
-        for i in 0..first.len() {
-            let (above, row) = band.split_at_mut(at[i]);
-            let row = &mut row[..at[i + 1] - at[i]];
-            let begin = first[i] as usize;
-            for j in begin..i {
-                let from = (first[j] as usize).max(begin);
-                let other = &above[at[j] + from - first[j] as usize..at[j + 1]];
-                let (done, rest) = row.split_at_mut(j - begin);
-                let sum = product(&done[from - begin..], other);
-                rest[0] = (rest[0] - sum) * other[other.len() - 1];
-            }
-            let last = row.len() - 1;
-            let square = product(&row[..last], &row[..last]);
-            let whole = row[last];
-            let pivot = whole - square;
-            // Reciprocals on the diagonal; what has no pivot stays 0.
-            row[last] = if pivot > 1e-13 * whole { 1.0 / pivot.sqrt() } else { 0.0 };
-        }
-    }
-
-    fn solve(&mut self) {
-        let Self { first, at, band, x, .. } = self;
-        for i in 0..first.len() {
-            let row = &band[at[i]..at[i + 1]];
-            let last = row.len() - 1;
-            let sum = product(&row[..last], &x[first[i] as usize..i]);
-            x[i] = (x[i] - sum) * row[last];
-        }
-        for i in (0..first.len()).rev() {
-            let row = &band[at[i]..at[i + 1]];
-            let last = row.len() - 1;
-            x[i] *= row[last];
-            let xi = x[i];
-            x[first[i] as usize..i].iter_mut().zip(row).for_each(|(x, l)| *x -= l * xi);
-        }
-    }
-}
-
-/// Sum of products in four lanes, which compilers turn into vector instructions.
-fn product(a: &[f64], b: &[f64]) -> f64 {
-    let n = a.len().min(b.len());
-    let (a, b) = (&a[..n], &b[..n]);
-    let mut lanes = [0.0; 4];
-    let (a4, b4) = (a.chunks_exact(4), b.chunks_exact(4));
-    let rest: f64 = a4.remainder().iter().zip(b4.remainder()).map(|(x, y)| x * y).sum();
-    for (x, y) in a4.zip(b4) {
-        (0..4).for_each(|i| lanes[i] += x[i] * y[i]);
-    }
-    rest + (lanes[0] + lanes[1]) + (lanes[2] + lanes[3])
-}
 
 /// An order of the vertices in which neighbours are close together: breadth first, from an end of each piece, reversed.
 /// `links` are the neighbours of each vertex.

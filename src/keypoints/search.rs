@@ -23,7 +23,7 @@ use glam::DVec3;
 const ADDING: [usize; 2] = [20, 3];
 
 /// The same when one is replaced.
-const REPLACING: [usize; 2] = [12, 2];
+const REPLACING: [usize; 2] = [12, 1];
 
 /// The same when one is moved to a vertex at most so many edges away.
 const MOVING: [usize; 2] = [4, 1];
@@ -69,12 +69,12 @@ impl<'a> Search<'a> {
     /// Starts from the first candidate (§3.5), which matters little, as it will be replaced.
     pub fn new(coarse: &'a Coarse, fit: FitParameters) -> Self {
         let mut search = Self::from_points(coarse, fit, coarse.candidates.get(..1).unwrap_or_default());
-        let start = search.set.members.clone();
-        search.probes = coarse.candidates.iter().map(|&c| search.field(c, &start, None)).collect();
+        search.probe();
         search
     }
 
-    /// Starts from points (vertices of the coarse mesh) that are only to be moved and put in order.
+    /// Starts from points (vertices of the coarse mesh). They can be moved and put in order, and after
+    /// [`Search::probe`] replaced.
     pub fn from_points(coarse: &'a Coarse, fit: FitParameters, points: &[u32]) -> Self {
         let fit = FitParameters { rounds: 6, tolerance: 1e-3, ..fit };
         let mut search = Self { coarse, fit, scratch: Scratch::default(), set: Set::default(), probes: Vec::new() };
@@ -85,6 +85,16 @@ impl<'a> Search<'a> {
         let (groups, rough) = (vec![0; coarse.energy.len()], vec![false; points.len()]);
         search.set = search.regrouped(Set { members: points.to_vec(), fields, rough, groups, error: 0.0 });
         search
+    }
+
+    /// Estimates the candidates' fields anew: while the set changes, they grow worse.
+    pub fn probe(&mut self) {
+        let members = self.set.members.clone();
+        let probe = |&c: &u32| match members.iter().position(|&m| m == c) {
+            Some(place) => self.set.fields[place].clone(),
+            None => self.coarse.energy.estimate(c, &members, &mut self.scratch),
+        };
+        self.probes = self.coarse.candidates.iter().map(probe).collect();
     }
 
     /// What [`Search::restore`] goes back to.

@@ -3,6 +3,7 @@
 #[cfg(feature = "solvers")]
 pub mod cholesky;
 pub mod conjugate_gradient;
+pub mod envelope;
 pub mod jacobi;
 pub mod polar;
 #[cfg(feature = "solvers")]
