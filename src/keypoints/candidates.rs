@@ -10,12 +10,16 @@ use glam::DVec3;
 /// Times that the farthest vertex is sought, at most; three are usual.
 const SWEEPS: usize = 6;
 
+/// Ends of limbs that are tried as ends of the longest way.
+const LIMBS: usize = 6;
+
 /// Candidates in the order in which they are found, as vertices of the surface.
 ///
-/// The first is an end of the largest piece: from the vertex farthest from its middle, or for `seed` other than 0 from any
-/// of its vertices, to the farthest along the surface, and from there again until ways grow no longer. So nearly every seed
-/// ends at the same place, and with the same candidates. Then every piece gets one, the largest first, and then whatever vertex is farthest along the surface. If pieces alone
-/// take more than half of `count`, more candidates are added, so that the largest still get half of `count` by distance.
+/// The first is an end of the longest way over the largest piece, as far as it is found ([`end`]) from the vertex farthest
+/// from the middle, or for `seed` other than 0 from any vertex: nearly every seed ends at the same place, and with the
+/// same candidates. Then every piece gets one, the largest first, and then whatever vertex is farthest along the surface.
+/// If pieces alone take more than half of `count`, more candidates are added, so that the largest still get half of
+/// `count` by distance.
 pub fn candidates(surface: &Surface, graph: &Graph, count: usize, seed: u64) -> Vec<u32> {
     let pieces = &surface.pieces;
     let mut distance = vec![f64::INFINITY; surface.reference.len()];
@@ -48,24 +52,56 @@ pub fn candidates(surface: &Surface, graph: &Graph, count: usize, seed: u64) -> 
     found
 }
 
-/// One end of the longest way that is found from a vertex by going to the farthest again and again: the end that is farther
-/// from the middle of all.
+/// One end of the longest way that is found: the end that is farther from the middle of all.
+///
+/// From a vertex to the farthest, again and again, leads to a way that cannot be made longer at one end. Of a body with
+/// limbs there are several, nearly as long as each other; so vertices that are far from all ends so far are tried, too.
 fn end(surface: &Surface, graph: &Graph, from: u32) -> u32 {
-    let (mut ends, mut length) = ([from, from], 0.0);
+    let mut longest = Way { ends: [from, from], length: 0.0 };
     for _ in 0..SWEEPS {
-        let mut distance = vec![f64::INFINITY; surface.reference.len()];
-        graph.lower(&mut distance, ends[1]);
-        let reached = distance.iter().enumerate().filter(|(_, d)| d.is_finite());
-        let farthest = reached.fold((0, length), |best, (v, &d)| if d > best.1 { (v as u32, d) } else { best });
-        if farthest.1 <= length {
+        let next = Way::from(longest.ends[1], &ways(surface, graph, longest.ends[1]));
+        if next.length <= longest.length {
             break;
         }
-        (ends, length) = ([ends[1], farthest.0], farthest.1);
+        longest = next;
+    }
+    let mut nearest = ways(surface, graph, longest.ends[0]);
+    graph.lower(&mut nearest, longest.ends[1]);
+    for _ in 0..LIMBS {
+        let limb = Way::from(from, &nearest).ends[1];
+        let distance = ways(surface, graph, limb);
+        nearest.iter_mut().zip(&distance).for_each(|(nearest, &d)| *nearest = d.min(*nearest));
+        let way = Way::from(limb, &distance);
+        if way.length > longest.length {
+            longest = way;
+        }
     }
     let middle = surface.reference.iter().sum::<DVec3>() / surface.reference.len().max(1) as f64;
     let far = |v: u32| surface.reference[v as usize].distance_squared(middle);
-    let [a, b] = ends;
+    let [a, b] = longest.ends;
     if far(b).total_cmp(&far(a)).then(a.cmp(&b)).is_gt() { b } else { a }
+}
+
+/// A way along the surface.
+struct Way {
+    ends: [u32; 2],
+    length: f64,
+}
+
+impl Way {
+    /// The way to the farthest vertex, given the ways' lengths to all.
+    fn from(from: u32, distance: &[f64]) -> Self {
+        let reached = distance.iter().enumerate().filter(|(_, d)| d.is_finite());
+        let (to, length) = reached.fold((from, 0.0), |best, (v, &d)| if d > best.1 { (v as u32, d) } else { best });
+        Self { ends: [from, to], length }
+    }
+}
+
+/// The lengths of the ways from a vertex to all.
+fn ways(surface: &Surface, graph: &Graph, from: u32) -> Vec<f64> {
+    let mut distance = vec![f64::INFINITY; surface.reference.len()];
+    graph.lower(&mut distance, from);
+    distance
 }
 
 fn farthest_from_the_middle(piece: &[u32], points: &[DVec3]) -> u32 {

@@ -1,5 +1,5 @@
-//! The search from stage to stage: points are added, exchanged, replaced and moved on one coarse mesh, and moved once
-//! more and put in order on a finer one.
+//! The search from stage to stage: points are added, replaced and moved on one coarse mesh; then moved, exchanged,
+//! replaced and put in order on a finer one.
 //!
 //! Adding the best and then replacing one at a time (§3.5) ends where the first points happen to lead. More points than
 //! wanted and then fewer again (P. Pudil, J. Novovičová, J. Kittler. *Floating search methods in feature selection*.
@@ -18,9 +18,11 @@ use super::{Parameters, Stop};
 /// Vertices of the coarse mesh on which sets are sought, and of the one on which they are settled.
 const COARSE: [usize; 2] = [600, 900];
 
-/// Points that are added and taken away again, and how often at most.
+/// Candidates that are tried again on the finer mesh: the first that were found, which lie all over.
+const AGAIN: usize = 60;
+
+/// Points that are added and taken away again.
 const MORE: usize = 3;
-const EXCHANGES: usize = 2;
 
 /// How often every point may be replaced or moved; three times are many.
 const ROUNDS: usize = 20;
@@ -72,23 +74,17 @@ pub fn run(found: &[u32], full: &Full, parameters: &Parameters, watch: &mut Watc
             curve.push(search.set.error);
             more = !is_enough(parameters, &curve);
         }
-        watch.begin("exchanging points", 0.35)?;
-        for _ in 0..EXCHANGES {
-            if !exchange(&mut search, &coarse, &mut trail, watch)? {
-                break;
-            }
-        }
-        watch.begin("replacing points", 0.45)?;
-        in_turn(&mut search, Search::replace, [0.45, 0.55], &coarse, &mut trail, watch)?;
-        watch.begin("moving points", 0.55)?;
-        in_turn(&mut search, Search::shift, [0.55, 0.65], &coarse, &mut trail, watch)?;
+        watch.begin("replacing points", 0.35)?;
+        in_turn(&mut search, Search::replace, [0.35, 0.42], &coarse, &mut trail, watch)?;
+        watch.begin("moving points", 0.42)?;
+        in_turn(&mut search, Search::shift, [0.42, 0.5], &coarse, &mut trail, watch)?;
         let count = search.set.members.len();
         let mut kept: Vec<u32> = search.set.members.iter().map(|&m| coarse.surface.origin[m as usize]).collect();
-        let others: Vec<u32> = found.iter().copied().filter(|v| !kept.contains(v)).collect();
+        let others: Vec<u32> = found.iter().copied().filter(|v| !kept.contains(v)).take(AGAIN).collect();
         kept.extend(others);
         let finer = Coarse::new(surface, &kept, &poses, COARSE[1], gammas);
         let mut last = Search::from_points(&finer, parameters.fit(), &finer.candidates[..count]);
-        in_turn(&mut last, Search::shift, [0.65, 0.75], &finer, &mut trail, watch)?;
+        settle(&mut last, &finer, &mut trail, watch)?;
         watch.begin("ordering points", 0.75)?;
         let (order, estimates) = last.order(&mut || watch.go_on(0.78)).ok_or(KeyPointError::Cancelled)?;
         let points: Vec<u32> = order.into_iter().map(|m| trail.name(&finer, m)).collect();
@@ -105,29 +101,59 @@ pub fn run(found: &[u32], full: &Full, parameters: &Parameters, watch: &mut Watc
     }
 }
 
-/// Adds some points and takes the same number away, whichever can be spared; whether that was for the better.
-fn exchange(search: &mut Search, coarse: &Coarse, trail: &mut Trail, watch: &mut Watch) -> Result<bool, KeyPointError> {
+/// Moves, exchanges and replaces points on the finer mesh, where they come to lie elsewhere.
+fn settle<'a>(
+    search: &mut Search<'a>,
+    finer: &'a Coarse,
+    trail: &mut Trail,
+    watch: &mut Watch,
+) -> Result<(), KeyPointError> {
+    watch.begin("moving points", 0.5)?;
+    in_turn(search, Search::shift, [0.5, 0.57], finer, trail, watch)?;
+    watch.begin("exchanging points", 0.57)?;
+    search.probe();
+    let before = search.set.error;
+    exchange(search, [0.57, 0.65], finer, trail, watch)?;
+    watch.begin("replacing points", 0.65)?;
+    in_turn(search, Search::replace, [0.65, 0.7], finer, trail, watch)?;
+    if search.set.error < before {
+        watch.begin("moving points", 0.7)?;
+        in_turn(search, Search::shift, [0.7, 0.75], finer, trail, watch)?;
+    }
+    Ok(())
+}
+
+/// Adds some points and takes the same number away, whichever can be spared, if that is for the better. Progress goes
+/// `from` … `to`.
+fn exchange(
+    search: &mut Search,
+    [from, to]: [f64; 2],
+    coarse: &Coarse,
+    trail: &mut Trail,
+    watch: &mut Watch,
+) -> Result<(), KeyPointError> {
     let before = search.state();
     let old = search.set.members.clone();
     let error = search.set.error;
     for _ in 0..MORE {
-        if search.add(&mut || watch.go_on(0.4)).is_none() {
-            watch.tell(0.4)?;
+        if search.add(&mut || watch.go_on(from)).is_none() {
+            watch.tell(from)?;
             break;
         }
     }
+    let middle = 0.5 * (from + to);
     while search.set.members.len() > old.len() {
-        search.remove(&mut || watch.go_on(0.43)).ok_or(KeyPointError::Cancelled)?;
+        search.remove(&mut || watch.go_on(middle)).ok_or(KeyPointError::Cancelled)?;
     }
     if search.set.error >= error * (1.0 - WORTH) {
         search.restore(before);
-        return Ok(false);
+        return Ok(());
     }
     let members = &search.set.members;
     let gone = old.iter().filter(|m| !members.contains(m));
     let come = members.iter().filter(|m| !old.contains(m));
     gone.zip(come).for_each(|(&from, &to)| trail.add(coarse, from, to, search.set.error));
-    Ok(true)
+    Ok(())
 }
 
 /// Replaces or moves points in turn until none can be for the better, while progress goes `from` … `to`.

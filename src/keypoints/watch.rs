@@ -46,7 +46,10 @@ impl<'a> Watch<'a> {
     fn end(&mut self) {
         let now = clock::seconds();
         if !self.stage.is_empty() {
-            self.seconds.push((self.stage, now - self.started));
+            match self.seconds.iter_mut().find(|(stage, _)| *stage == self.stage) {
+                Some((_, seconds)) => *seconds += now - self.started,
+                None => self.seconds.push((self.stage, now - self.started)),
+            }
         }
         self.started = now;
     }
