@@ -187,7 +187,7 @@ fn other_starts_are_as_good() {
     for name in ["horse", "person", "octopus"] {
         let sequence = creature(name, 1_200);
         let by_seed = |seed| error(&sequence, Parameters { seed, ..Parameters::default() });
-        assert!(spread(&(0..4).map(by_seed).collect::<Vec<_>>()) <= 1.05, "{name}");
+        assert!(spread(&(0..5).map(by_seed).collect::<Vec<_>>()) <= 1.05, "{name}");
     }
     // Nearly all of these start from the same end; so here are other candidates.
     let horse = creature("horse", 1_200);
