@@ -10,7 +10,9 @@ use proposals::{Case, Draw, Errors, animal_case, body_cases, mean, measure, most
 use sinew::clock;
 
 fn cases() -> Vec<Case> {
-    let mut cases = vec![zoo_case("person", "person-arms-out"), zoo_case("horse", "camel")];
+    let creatures =
+        [("person", "person-arms-out"), ("horse", "camel"), ("cat", "elephant"), ("cat", "camel"), ("cat", "giraffe")];
+    let mut cases: Vec<Case> = creatures.iter().map(|(a, b)| zoo_case(a, b)).collect();
     if let Some(data) = npz::data("proposals on bodies and animals") {
         let bodies = [("man_lean", "woman"), ("man_lean", "heavy_man"), ("woman", "heavy_man"), ("heavy_man", "woman")];
         cases.extend(body_cases(&data, &bodies));

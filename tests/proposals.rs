@@ -60,6 +60,12 @@ fn creatures_of_one_build() {
 }
 
 #[test]
+fn a_trunk_is_not_taken_for_a_tail() {
+    check(&zoo_case("cat", "elephant"), &[(0, 4.0, 15.0), (3, 4.0, 10.0)]);
+    check(&zoo_case("elephant", "cat"), &[(0, 4.0, 15.0), (3, 4.0, 10.0)]);
+}
+
+#[test]
 fn bodies_and_animals() {
     let Some(data) = npz::data("proposals on bodies and animals") else { return };
     for case in body_cases(&data, &[("man_lean", "woman"), ("man_lean", "heavy_man")]) {

@@ -91,8 +91,8 @@ pub enum ProposeError {
 pub struct Proposer {
     source: Surface,
     target: Surface,
-    /// How the figures lie over each other as far as shapes alone tell.
-    orientations: Vec<starts::Orientation>,
+    /// How the figures may lie over each other as far as shapes alone tell: first as they are.
+    stands: Vec<starts::Stand>,
     refiner: Option<Refiner>,
 }
 
@@ -110,8 +110,8 @@ impl Proposer {
         let source = Surface::new(source_faces, source_positions, SAMPLES).ok_or(ProposeError::Empty("source"))?;
         let target = Surface::new(target_faces, target_positions, SAMPLES).ok_or(ProposeError::Empty("target"))?;
         let refiner = Refiner::new(&source, &target);
-        let mut proposer = Self { source, target, orientations: Vec::new(), refiner };
-        proposer.orientations = starts::orientations(&proposer);
+        let mut proposer = Self { source, target, stands: Vec::new(), refiner };
+        proposer.stands = starts::stands(&proposer);
         Ok(proposer)
     }
 

@@ -12,14 +12,26 @@ const FACING: f64 = 0.02;
 /// How far a stretch to the target's box may go, either way, from its mean.
 const STRETCH: [f64; 2] = [0.6, 1.6];
 
-/// How much better another turn than the given one must be.
-const CLEARLY: f64 = 0.8;
+/// How much better another turn than none must end.
+const CLEARLY: f64 = 0.85;
 
-/// How the source is laid over the target.
+/// From so many given pairs on, they tell how the figures stand.
+const TELLING: usize = 2;
+
+/// A way in which the source may stand, to be laid over the target.
 #[derive(Clone, Copy, Debug)]
-pub struct Orientation {
-    /// A turn, then perhaps a stretch to the target's box.
-    pub map: DMat3,
+pub struct Stand {
+    /// One of the turns of a cube.
+    turn: DMat3,
+    /// The turn, and the turn with a stretch to the target's box.
+    maps: [DMat3; 2],
+}
+
+impl Stand {
+    fn new(proposer: &Proposer, turn: DMat3) -> Self {
+        let stretch = stretch(proposer.source.sides, proposer.target.sides, turn);
+        Self { turn, maps: [turn, DMat3::from_diagonal(stretch) * turn] }
+    }
 }
 
 /// Places of a crowd.
@@ -31,6 +43,11 @@ pub(super) struct Start {
 }
 
 impl Start {
+    /// No places at all.
+    fn nowhere(crowd: &Crowd) -> Self {
+        Self { at: vec![None; crowd.points.len()], badness: f64::MAX }
+    }
+
     /// The places in a crowd with more company: the newcomers have none yet.
     pub fn spread(&self, count: usize, company: [usize; 2], asked: usize) -> Vec<Option<u32>> {
         let mut at = vec![None; count];
@@ -41,23 +58,48 @@ impl Start {
     }
 }
 
-/// The start that ends best for a crowd.
+/// The start that ends best for a crowd, among those of the stand that given pairs speak for. Where there are none, the
+/// figures stand as they are, unless another turn ends clearly better.
 pub(super) fn best(proposer: &Proposer, crowd: &Crowd) -> Start {
+    let given: Vec<(f64, DVec3, DVec3)> =
+        crowd.points.iter().filter_map(|p| Some((1.0, p.place, p.given.as_ref()?.place))).collect();
+    let ends = |stand: &Stand| best_of(proposer, crowd, stand, &given);
+    let Some((as_they_are, turned)) = proposer.stands.split_first() else { return Start::nowhere(crowd) };
+    if given.len() >= TELLING {
+        let fits_better = |a, b| if misfit(b, &given) < misfit(a, &given) { b } else { a };
+        return ends(turned.iter().fold(as_they_are, fits_better));
+    }
+    let first = ends(as_they_are);
+    let clearly_better = |end: &Start| end.badness < CLEARLY * first.badness;
+    turned.iter().map(ends).find(clearly_better).unwrap_or(first)
+}
+
+/// How far given pairs stay apart when the turned source is only shifted and made larger or smaller, in squares.
+fn misfit(stand: &Stand, given: &[(f64, DVec3, DVec3)]) -> f64 {
+    let motion = Similarity::fit(given.iter().map(|&(w, p, q)| (w, stand.turn * p, q)));
+    let off = |&(_, p, q): &(f64, DVec3, DVec3)| {
+        let (from, to) = (stand.turn * p - motion.from, q - motion.to);
+        (motion.scale * from).distance_squared(to)
+    };
+    given.iter().map(off).sum()
+}
+
+/// The start that ends best, of those that lay the figures over each other in one way.
+fn best_of(proposer: &Proposer, crowd: &Crowd, stand: &Stand, given: &[(f64, DVec3, DVec3)]) -> Start {
     let mut starts: Vec<Vec<Option<u32>>> = Vec::new();
     let lay = |map: &dyn Fn(DVec3) -> DVec3, turn: DMat3| laid(&proposer.target, crowd, map, turn);
-    for orientation in &proposer.orientations {
-        starts.push(lay(&|p| orientation.map * p, orientation.map));
+    for map in stand.maps {
+        starts.push(lay(&|p| map * p, map));
     }
-    for orientation in &proposer.orientations {
+    for map in stand.maps {
         let mut at = vec![None; crowd.points.len()];
-        for (point, sample) in tips::assign(&proposer.source, &proposer.target, crowd, orientation.map) {
+        for (point, sample) in tips::assign(&proposer.source, &proposer.target, crowd, map) {
             at[point as usize] = Some(sample);
         }
         starts.push(at);
     }
-    let given = crowd.points.iter().filter_map(|p| Some((1.0, p.place, p.given.as_ref()?.place)));
-    if given.clone().count() >= 3 {
-        let motion = Similarity::fit(given);
+    if given.len() >= 3 {
+        let motion = Similarity::fit(given.iter().copied());
         starts.push(lay(&|p| motion.apply(p), motion.rotation));
     }
     let schedules: [&[Rules]; 2] = [
@@ -73,7 +115,7 @@ pub(super) fn best(proposer: &Proposer, crowd: &Crowd) -> Start {
             }
         }
     }
-    best.unwrap_or(Start { at: vec![None; crowd.points.len()], badness: f64::MAX })
+    best.unwrap_or_else(|| Start::nowhere(crowd))
 }
 
 fn rules(reach: f64, place: f64) -> Rules {
@@ -87,25 +129,24 @@ fn run(target: &Surface, crowd: &Crowd, start: Vec<Option<u32>>, schedule: &[Rul
     Start { at: consensus.at, badness }
 }
 
-/// The turns worth trying: the figures as they stand, and stretched to the same box; another turn if the shapes clearly
-/// agree better so.
-pub(super) fn orientations(proposer: &Proposer) -> Vec<Orientation> {
+/// The stands worth trying: first the figures as they are, then, if the shapes agree better so at first sight, turned.
+///
+/// First sight is not enough to decide: a cat's tail has the length of a camel's neck.
+pub(super) fn stands(proposer: &Proposer) -> Vec<Stand> {
     let crowd = proposer.crowd(COMPANY[0], &[], &[]);
     let score = |turn: DMat3| {
         let start = laid(&proposer.target, &crowd, &|p| turn * p, turn);
         run(&proposer.target, &crowd, start, &[rules(1.0, 0.75), rules(0.3, 0.75)]).badness
     };
-    let as_given = score(DMat3::IDENTITY);
-    let mut best = (DMat3::IDENTITY, as_given * CLEARLY);
+    let mut best = (DMat3::IDENTITY, score(DMat3::IDENTITY));
     for turn in turns() {
         let badness = score(turn);
         if badness < best.1 {
             best = (turn, badness);
         }
     }
-    let turn = best.0;
-    let stretch = stretch(proposer.source.sides, proposer.target.sides, turn);
-    vec![Orientation { map: turn }, Orientation { map: DMat3::from_diagonal(stretch) * turn }]
+    let turned = (best.0 != DMat3::IDENTITY).then_some(best.0);
+    [DMat3::IDENTITY].into_iter().chain(turned).map(|turn| Stand::new(proposer, turn)).collect()
 }
 
 /// The 23 turns of a cube other than none.
