@@ -109,7 +109,7 @@ fn pass(mut from: TcpStream, mut to: TcpStream) {
 #[ignore = "drives the built page in Chromium: run by `cargo xtask test`"]
 fn once_loaded_it_works_without_a_network() {
     let wire = Wire::new(&std::env::var("SINEW_PAGE").expect("the page is served"));
-    let mut page = Page::open_at(wire.address.clone(), Backend::WebGl2, Screen::Small, "#v1;zoo=snake;faces=3000");
+    let mut page = Page::open_at(wire.address.clone(), Backend::WebGl2, Screen::Still, "#v1;zoo=snake;faces=3000");
     page.wait_until(SETTLED, 60.0);
     page.evaluate_within("navigator.serviceWorker.ready.then(() => 0)", 30.0);
     page.wait_until("navigator.serviceWorker.controller", 10.0);
@@ -125,7 +125,7 @@ fn once_loaded_it_works_without_a_network() {
 #[test]
 #[ignore = "drives the built page in Chromium: run by `cargo xtask test`"]
 fn a_crashed_engine_costs_one_question_and_nothing_else() {
-    let mut page = opened(Backend::WebGl2, Screen::Small, SMALL);
+    let mut page = opened(Backend::WebGl2, Screen::Still, SMALL);
     page.evaluate("sinew.app.setStep('keypoints')");
     page.wait_until(&format!("sinew.state().points === 6 && {IDLE}"), 60.0);
     page.evaluate("sinew.app.setView('weights'); sinew.app.select(2)");
@@ -144,7 +144,7 @@ fn a_crashed_engine_costs_one_question_and_nothing_else() {
 #[test]
 #[ignore = "drives the built page in Chromium: run by `cargo xtask test`"]
 fn a_lost_picture_comes_back_in_the_middle_of_a_stage() {
-    let mut page = opened(Backend::WebGl2, Screen::Small, SMALL);
+    let mut page = opened(Backend::WebGl2, Screen::Still, SMALL);
     page.evaluate("sinew.app.setStep('keypoints')");
     page.wait_until(&format!("sinew.app.keypoints.current?.rounds && {IDLE}"), 60.0);
     page.evaluate("sinew.app.setView('alternation'); sinew.app.setPlace(1)");
@@ -168,7 +168,7 @@ fn a_lost_picture_comes_back_in_the_middle_of_a_stage() {
 #[test]
 #[ignore = "drives the built page in Chromium: run by `cargo xtask test`"]
 fn the_policy_is_kept_all_the_way() {
-    let mut page = opened(Backend::WebGl2, Screen::Small, SMALL);
+    let mut page = opened(Backend::WebGl2, Screen::Still, SMALL);
     page.evaluate("window.refused = []; document.addEventListener('securitypolicyviolation', ({ violatedDirective, blockedURI }) => refused.push(`${violatedDirective} ${blockedURI}`)); undefined");
     for step in ["source", "parts", "keypoints", "target", "transfer", "export"] {
         page.evaluate(&format!("sinew.app.setLessons(true); sinew.app.setStep('{step}'); for (const fold of document.querySelectorAll('#panel details')) fold.open = true"));
@@ -209,7 +209,7 @@ fn the_page_is_never_held_up_while_a_job_runs() {
 #[test]
 #[ignore = "drives the built page in Chromium: run by `cargo xtask test`"]
 fn all_that_can_be_pressed_is_reached_with_tab() {
-    let mut page = opened(Backend::WebGl2, Screen::Small, SMALL);
+    let mut page = opened(Backend::WebGl2, Screen::Still, SMALL);
     page.evaluate("sinew.app.setLessons(true); document.activeElement.blur(); window.reached = new Set(); document.addEventListener('focusin', ({ target }) => reached.add(target)); undefined");
     page.rest(0.5);
     for _ in 0..160 {

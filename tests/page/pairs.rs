@@ -109,7 +109,7 @@ const DOCUMENT: &str = "JSON.stringify([sinew.app.doc.points, sinew.app.doc.coun
 #[test]
 #[ignore = "drives the built page in Chromium: run by `cargo xtask test`"]
 fn everything_is_undone_and_redone() {
-    let mut page = proposed(Backend::WebGl2, Screen::Small);
+    let mut page = proposed(Backend::WebGl2, Screen::Still);
     let acts = [
         "sinew.app.target.accept(0)",
         "sinew.app.target.remove(1)",
@@ -144,7 +144,7 @@ fn everything_is_undone_and_redone() {
 #[test]
 #[ignore = "drives the built page in Chromium: run by `cargo xtask test`"]
 fn a_point_is_dragged_and_the_motion_follows() {
-    let mut page = proposed(Backend::WebGl2, Screen::Small);
+    let mut page = proposed(Backend::WebGl2, Screen::Still);
     // A pin of the target that can be seen, and a way to go that stays on the surface.
     let seen = page.evaluate(
         "(() => { const { second } = sinew.app, box = second.canvas.getBoundingClientRect();
@@ -193,7 +193,7 @@ fn a_target_of_5000_vertices_follows_the_hand() {
 #[test]
 #[ignore = "drives the built page in Chromium: run by `cargo xtask test`"]
 fn a_link_brings_the_pairs_back() {
-    let mut page = proposed(Backend::WebGl2, Screen::Small);
+    let mut page = proposed(Backend::WebGl2, Screen::Still);
     page.click("#target-point-2-accept");
     page.wait_until("sinew.state().tally.placed === 1 && !sinew.state().busy", PATIENT);
     page.evaluate("sinew.app.transfer.setMethod('direct'), 0");
@@ -214,7 +214,7 @@ fn a_link_brings_the_pairs_back() {
 #[test]
 #[ignore = "drives the built page in Chromium: run by `cargo xtask test`"]
 fn a_cancel_costs_one_step() {
-    let mut page = proposed(Backend::WebGl2, Screen::Small);
+    let mut page = proposed(Backend::WebGl2, Screen::Still);
     let before = page.evaluate(DOCUMENT);
     page.evaluate("void sinew.app.keypoints.setParameter('literal', true)");
     page.wait_until("sinew.state().busy?.done > 0", PATIENT);

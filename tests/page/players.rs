@@ -89,7 +89,7 @@ fn play(page: &mut Page, name: &str, bytes: Vec<u8>, made: &Made, wanted: impl F
 fn three() -> Page {
     let address = players().0;
     put("index.html", include_bytes!("players.html"));
-    let mut page = Page::open_at(address, Backend::WebGl2, Screen::Small, "");
+    let mut page = Page::open_at(address, Backend::WebGl2, Screen::Still, "");
     page.wait_until("window.players", 20.0);
     page
 }

@@ -22,7 +22,7 @@ fn bytes_of(page: &mut Page, blob: &str) -> Vec<u8> {
 #[ignore = "drives the built page in Chromium: run by `cargo xtask test`"]
 fn a_link_brings_back_the_stage_the_face_and_the_pairs() {
     let mut page =
-        opened(Backend::WebGl2, Screen::Small, "#v1;zoo=horse;faces=3000;poses=8;view=features;at=3;t=2;lesson=open");
+        opened(Backend::WebGl2, Screen::Still, "#v1;zoo=horse;faces=3000;poses=8;view=features;at=3;t=2;lesson=open");
     assert_eq!((&page.state()["view"], &page.state()["place"]), (&json!("features"), &json!(3)));
     page.evaluate("sinew.app.setView('gradients'); sinew.app.chooseFace(77)");
     page.evaluate("void sinew.app.target.openPair('horse', 'camel')");
@@ -44,7 +44,7 @@ fn a_link_brings_back_the_stage_the_face_and_the_pairs() {
 #[test]
 #[ignore = "drives the built page in Chromium: run by `cargo xtask test`"]
 fn odd_and_old_links_open_something() {
-    let mut page = opened(Backend::WebGl2, Screen::Small, "#v1;zoo=snake;faces=3000;view=clusters;at=0");
+    let mut page = opened(Backend::WebGl2, Screen::Still, "#v1;zoo=snake;faces=3000;view=clusters;at=0");
     assert_eq!(page.state()["view"], "clusters");
     for hash in [
         "#v1;zoo=nothing;step=elsewhere;view=none;at=-5;face=99999999;points=1,b,,3;pairs=~x;parts=1e9;look=1,2",
@@ -61,7 +61,7 @@ fn odd_and_old_links_open_something() {
 #[test]
 #[ignore = "drives the built page in Chromium: run by `cargo xtask test`"]
 fn a_frame_shows_the_picture_with_or_without_controls() {
-    let mut page = opened(Backend::WebGl2, Screen::Small, "#v1;zoo=snake;faces=3000;parts=4");
+    let mut page = opened(Backend::WebGl2, Screen::Still, "#v1;zoo=snake;faces=3000;parts=4");
     page.click("#open-share");
     page.wait_until("document.querySelector('#share').open", 2.0);
     let link = page.evaluate("document.querySelector('#share-link').value");
@@ -88,7 +88,7 @@ fn a_frame_shows_the_picture_with_or_without_controls() {
 #[test]
 #[ignore = "drives the built page in Chromium: run by `cargo xtask test`"]
 fn addresses_that_are_neither_https_nor_here_are_refused() {
-    let mut page = opened(Backend::WebGl2, Screen::Small, "?src=http://other.example/a.glb#v1");
+    let mut page = opened(Backend::WebGl2, Screen::Still, "?src=http://other.example/a.glb#v1");
     let state = page.state();
     assert!(state["error"].as_str().is_some_and(|error| error.contains("https")), "{state}");
     assert_eq!(state["source"]["name"], "horse", "{state}");
@@ -97,7 +97,7 @@ fn addresses_that_are_neither_https_nor_here_are_refused() {
 #[test]
 #[ignore = "drives the built page in Chromium: run by `cargo xtask test`"]
 fn a_project_holds_the_visitors_own_files() {
-    let mut page = opened(Backend::WebGl2, Screen::Small, "#v1;zoo=snake;faces=3000");
+    let mut page = opened(Backend::WebGl2, Screen::Still, "#v1;zoo=snake;faces=3000");
     page.drop_files(&[("hinge.glb", &glb::hinge(24))]);
     page.wait_until("sinew.state().source.name.includes('hinge') && sinew.state().parts === 2", 30.0);
     page.evaluate("sinew.app.setStep('keypoints')");
@@ -134,7 +134,7 @@ fn a_project_holds_the_visitors_own_files() {
 #[test]
 #[ignore = "drives the built page in Chromium: run by `cargo xtask test`"]
 fn what_is_taken_away_comes_back() {
-    let mut page = opened(Backend::WebGl2, Screen::Small, "#v1;zoo=horse;faces=3000;poses=8;t=2");
+    let mut page = opened(Backend::WebGl2, Screen::Still, "#v1;zoo=horse;faces=3000;poses=8;t=2");
     let residual = page.state()["residual"].as_f64().unwrap_or(f64::NAN);
     let made =
         page.evaluate("sinew.app.exportRigid().then(({ bytes, error, rms }) => (window.rigid = bytes, [error, rms]))");

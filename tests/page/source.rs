@@ -4,7 +4,7 @@ use crate::harness::{Backend, Page, Screen, glb};
 use crate::opening::SETTLED;
 
 fn a_dropped_file_is_painted(backend: Backend) {
-    let mut page = Page::open(backend, Screen::Small, "");
+    let mut page = Page::open(backend, Screen::Still, "");
     page.wait_until("sinew.ready && !sinew.state().busy", 20.0);
     page.drop_files(&[("hinge.glb", &glb::hinge(24))]);
     page.wait_until("sinew.state().source.name.includes('hinge') && sinew.state().parts === 2", 30.0);
@@ -34,7 +34,7 @@ fn a_dropped_file_is_painted_on_webgl2() {
 #[test]
 #[ignore = "drives the built page in Chromium: run by `cargo xtask test`"]
 fn a_bad_file_is_refused_in_words_and_nothing_is_lost() {
-    let mut page = Page::open(Backend::WebGpu, Screen::Small, "");
+    let mut page = Page::open(Backend::WebGpu, Screen::Still, "");
     page.wait_until("sinew.ready && sinew.state().parts > 1 && !sinew.state().busy", 20.0);
     let before = page.state();
     let cut = &glb::hinge(24)[..2000];
@@ -49,7 +49,7 @@ fn a_bad_file_is_refused_in_words_and_nothing_is_lost() {
 #[test]
 #[ignore = "drives the built page in Chromium: run by `cargo xtask test`"]
 fn what_cannot_be_opened_is_called_by_its_name() {
-    let mut page = Page::open(Backend::WebGl2, Screen::Small, "#v1;zoo=snake;faces=3000");
+    let mut page = Page::open(Backend::WebGl2, Screen::Still, "#v1;zoo=snake;faces=3000");
     page.wait_until(SETTLED, 30.0);
     let files: [(&str, &[u8], &str); 4] = [
         ("hero.fbx", b"Kaydara FBX Binary  ", "Export it as glTF"),
@@ -68,7 +68,7 @@ fn what_cannot_be_opened_is_called_by_its_name() {
 #[test]
 #[ignore = "drives the built page in Chromium: run by `cargo xtask test`"]
 fn a_full_memory_ends_in_a_sentence() {
-    let mut page = Page::open(Backend::WebGl2, Screen::Small, "#v1;zoo=snake;faces=3000");
+    let mut page = Page::open(Backend::WebGl2, Screen::Still, "#v1;zoo=snake;faces=3000");
     page.wait_until(SETTLED, 30.0);
     let before = page.state();
     // More poses than could be held: refused before it is tried.
@@ -150,7 +150,7 @@ fn broken_boxes() -> [String; 2] {
 #[test]
 #[ignore = "drives the built page in Chromium: run by `cargo xtask test`"]
 fn what_is_wrong_with_a_mesh_is_counted_and_shown() {
-    let mut page = Page::open(Backend::WebGpu, Screen::Small, "");
+    let mut page = Page::open(Backend::WebGpu, Screen::Still, "");
     page.wait_until("sinew.ready && !sinew.state().busy", 20.0);
     let [rest, bent] = broken_boxes();
     page.drop_files(&[("box1.obj", rest.as_bytes()), ("box2.obj", bent.as_bytes())]);
@@ -196,7 +196,7 @@ fn what_is_wrong_with_a_mesh_is_counted_and_shown() {
 #[test]
 #[ignore = "drives the built page in Chromium: run by `cargo xtask test`"]
 fn a_broken_engine_costs_one_step() {
-    let mut page = Page::open(Backend::WebGl2, Screen::Small, "");
+    let mut page = Page::open(Backend::WebGl2, Screen::Still, "");
     page.wait_until("sinew.ready && sinew.state().parts > 1 && !sinew.state().busy", 20.0);
     let before = page.state();
     // More than a wasm module can have at once: a trap, as when memory is full.

@@ -55,7 +55,7 @@ fn walked(page: &mut Page) -> Vec<String> {
 #[test]
 #[ignore = "drives the built page in Chromium: run by `cargo xtask test`"]
 fn every_stage_is_walked_through_and_nothing_is_computed_again() {
-    let mut page = opened(Backend::WebGl2, Screen::Small, SMALL);
+    let mut page = opened(Backend::WebGl2, Screen::Still, SMALL);
     page.evaluate(WATCH);
     first(&mut page, "gradients");
     let back =
@@ -72,7 +72,7 @@ fn every_stage_is_walked_through_and_nothing_is_computed_again() {
 }
 
 fn scrubbing_shows_other_pictures_at_once(backend: Backend) {
-    let mut page = opened(backend, Screen::Small, SMALL);
+    let mut page = opened(backend, Screen::Still, SMALL);
     page.evaluate("sinew.app.setView('merging')");
     let mut last = None;
     for place in [0, 120, 230] {
@@ -121,7 +121,7 @@ fn scrubbing_shows_other_pictures_at_once_on_webgl2() {
 #[test]
 #[ignore = "drives the built page in Chromium: run by `cargo xtask test`"]
 fn epsilon_is_dragged_on_the_histogram() {
-    let mut page = opened(Backend::WebGl2, Screen::Small, SMALL);
+    let mut page = opened(Backend::WebGl2, Screen::Still, SMALL);
     page.evaluate("document.querySelector('#panel .plot.draggable').closest('details').open = true");
     let before = page.evaluate("sinew.app.result.epsilon").as_f64().unwrap_or(f64::NAN);
     for (by, grows) in [(40.0, true), (-60.0, false)] {
@@ -151,7 +151,7 @@ fn epsilon_is_dragged_on_the_histogram() {
 #[test]
 #[ignore = "drives the built page in Chromium: run by `cargo xtask test`"]
 fn a_face_is_chosen_with_a_click_and_its_lesson_speaks_of_it() {
-    let mut page = opened(Backend::WebGl2, Screen::Small, &format!("{SMALL};view=gradients;lesson=open"));
+    let mut page = opened(Backend::WebGl2, Screen::Still, &format!("{SMALL};view=gradients;lesson=open"));
     page.wait_until("document.querySelector('.lesson .matrix')", 5.0);
     let before = page.evaluate("document.querySelector('.lesson-control').innerText");
     assert_eq!(page.evaluate("document.querySelectorAll('.overlay .axis').length"), 6);
@@ -175,7 +175,7 @@ fn a_face_is_chosen_with_a_click_and_its_lesson_speaks_of_it() {
 #[test]
 #[ignore = "drives the built page in Chromium: run by `cargo xtask test`"]
 fn every_stage_has_a_lesson() {
-    let mut page = opened(Backend::WebGl2, Screen::Small, &format!("{SMALL};lesson=open"));
+    let mut page = opened(Backend::WebGl2, Screen::Still, &format!("{SMALL};lesson=open"));
     let lessons = page.evaluate(
         "(async () => { const { STEPS } = await import(new URL('www/steps/index.js', location.href));
         const views = STEPS.filter(({ id }) => ['parts', 'keypoints'].includes(id)).flatMap(({ views }) => views.map(({ id }) => id));
@@ -269,7 +269,7 @@ fn the_tour_of_poses_that_differ_leads_to_its_end() {
 #[test]
 #[ignore = "drives the built page in Chromium: run by `cargo xtask test`"]
 fn a_stop_of_a_tour_is_a_link() {
-    let mut page = opened(Backend::WebGl2, Screen::Small, "#v1;tour=joints.3");
+    let mut page = opened(Backend::WebGl2, Screen::Still, "#v1;tour=joints.3");
     page.wait_until("sinew.state().tour && sinew.state().view === 'cut' && sinew.state().place === 0", 30.0);
     assert_eq!(page.state()["source"]["name"], "dinosaur");
     let tours = page.evaluate("import(new URL('www/tours.js', location.href)).then(({ TOURS }) => TOURS.length)");

@@ -16,6 +16,9 @@ pub enum Screen {
     Desktop,
     /// 960 × 640, a mouse: for what does not depend on the size, because drawing without a graphics card is slow.
     Small,
+    /// The same for a visitor who wants little motion: for what does not depend on it, because nothing is drawn then
+    /// while nothing happens.
+    Still,
     /// 390 × 844 at two device pixels to a CSS pixel, touch.
     Phone,
 }
@@ -102,12 +105,15 @@ impl Page {
         self.screen = screen;
         let (width, height, scale, phone) = match screen {
             Screen::Desktop => (1440, 900, 1, false),
-            Screen::Small => (960, 640, 1, false),
+            Screen::Small | Screen::Still => (960, 640, 1, false),
             Screen::Phone => (390, 844, 2, true),
         };
         let metrics = json!({ "width": width, "height": height, "deviceScaleFactor": scale, "mobile": phone });
         self.call("Emulation.setDeviceMetricsOverride", metrics);
         self.call("Emulation.setTouchEmulationEnabled", json!({ "enabled": phone, "maxTouchPoints": 5 }));
+        if screen == Screen::Still {
+            self.prefer(&[("prefers-reduced-motion", "reduce")]);
+        }
     }
 
     /// Sets media features, such as `("prefers-color-scheme", "dark")` or `("prefers-reduced-motion", "reduce")`.
@@ -196,7 +202,7 @@ impl Page {
             self.fail(&format!("{selector} cannot be clicked: something lies over it, or it is out of sight"));
         }
         match self.screen {
-            Screen::Desktop | Screen::Small => {
+            Screen::Desktop | Screen::Small | Screen::Still => {
                 self.mouse("mouseMoved", x, y, 0);
                 self.mouse("mousePressed", x, y, 1);
                 self.mouse("mouseReleased", x, y, 0);
@@ -287,7 +293,7 @@ impl Page {
         let picture = Picture::from_png(&png);
         let screen = match self.screen {
             Screen::Desktop => "desktop",
-            Screen::Small => "small",
+            Screen::Small | Screen::Still => "small",
             Screen::Phone => "phone",
         };
         let path = screenshots().join(format!("{name}-{}-{screen}.png", self.backend.name()));
