@@ -20,13 +20,13 @@ export function beside(app, first, make) {
   host.append(words);
   first.append(host);
   let unlink = null;
-  let painted = -1;
+  let painted = null;
   const active = () => Boolean(app.transfer.other && app.step === 'transfer' && app.second);
 
   const arrange = () => {
     const on = active();
     host.hidden = !on;
-    painted = -1;
+    painted = null;
     if (!on) {
       if (app.third) {
         unlink?.();
@@ -59,11 +59,16 @@ export function beside(app, first, make) {
     const { sequence } = app.target;
     const length = sequence.reference.length;
     const count = other.positions.length / length;
-    const pose = Math.round(app.third.kept.time) % count;
-    if (pose === painted || pose < 0) return;
+    const pose = Math.max(Math.round(app.third.kept.time), -1) % count;
+    if (pose === painted) return;
     painted = pose;
-    const [values, high] = [distances(other.own, other.positions, pose * length, length), most(other, length)];
+    const high = most(other, length);
+    const values = pose < 0 ? new Float32Array(length / 3) : distances(other.own, other.positions, pose * length, length);
     for (const figure of [app.second, app.third]) figure.paint(['paint_vertices', values, 0, high, MAP]);
+    if (pose < 0) {
+      words.textContent = 'The reference pose is the same by every method: play, or go to another pose.';
+      return;
+    }
     const mean = values.reduce((sum, value) => sum + value, 0) / values.length;
     const name = METHODS.find(([id]) => id === other.method)?.[1];
     words.textContent = `${name}: off by ${number((100 * mean) / sequence.diagonal, 2)} % of the size here, bright from ${number((100 * high) / sequence.diagonal, 2)} %`;
@@ -71,7 +76,7 @@ export function beside(app, first, make) {
 
   app.on('rival step target second', arrange);
   app.on('painted', () => {
-    painted = -1;
+    painted = null;
     paint();
   });
   app.stage.addEventListener('tick', paint);

@@ -7,7 +7,7 @@ use serde_json::Value;
 #[test]
 #[ignore = "drives the built page in Chromium: run by `cargo xtask test`"]
 fn faces_carry_the_motion_and_methods_stand_side_by_side() {
-    let mut page = proposed(Backend::WebGl2, Screen::Small);
+    let mut page = proposed(Backend::WebGl2, Screen::Still);
     step(&mut page, "transfer");
     for method in ["posed", "gradients"] {
         page.evaluate(&format!("document.querySelector('#control-variant-{method}').click()"));
@@ -37,6 +37,8 @@ fn faces_carry_the_motion_and_methods_stand_side_by_side() {
         ({ list: document.querySelector('#control-beside-it') })",
     );
     page.wait_until(&format!("sinew.state().moves.beside === 'direct' && {IDLE}"), PATIENT);
+    page.wait_until("document.querySelector('.beside-words').textContent.includes('reference')", PATIENT);
+    page.press(".");
     page.wait_until("document.querySelector('.beside-words').textContent.includes('%')", PATIENT);
     let together = "[sinew.app.third.kept.time === sinew.app.second.kept.time,
         sinew.app.third.kept.paint[0][0], sinew.app.second.kept.paint[0][0]]";
