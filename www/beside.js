@@ -59,7 +59,8 @@ export function beside(app, first, make) {
     const { sequence } = app.target;
     const length = sequence.reference.length;
     const count = other.positions.length / length;
-    const pose = Math.max(Math.round(app.third.kept.time), -1) % count;
+    const moment = Math.round(app.third.kept.time);
+    const pose = moment < 0 ? -1 : moment % count;
     if (pose === painted) return;
     painted = pose;
     const high = most(other, length);

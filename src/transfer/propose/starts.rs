@@ -58,8 +58,8 @@ impl Start {
     }
 }
 
-/// The start that ends best for a crowd, among those of the stand that given pairs speak for. Where there are none, the
-/// figures stand as they are, unless another turn ends clearly better.
+/// The start that ends best for a crowd, among those of the stand that given pairs speak for. Where too few are given,
+/// the figures stand as they are, unless turned they end clearly better.
 pub(super) fn best(proposer: &Proposer, crowd: &Crowd) -> Start {
     let given: Vec<(f64, DVec3, DVec3)> =
         crowd.points.iter().filter_map(|p| Some((1.0, p.place, p.given.as_ref()?.place))).collect();
