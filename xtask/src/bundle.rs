@@ -11,8 +11,9 @@
 use crate::setup::{self, WASM};
 use crate::{dist, shell};
 use anyhow::{Context, Result, bail};
-use std::fs;
+use std::fs::{self, File};
 use std::path::{Path, PathBuf};
+use std::process::{Child, Command};
 use std::time::{Instant, UNIX_EPOCH};
 use wasm_bindgen_cli_support::Bindgen;
 
@@ -39,9 +40,9 @@ pub fn build(dev: bool) -> Result<()> {
     let mut files = dist::Files::default();
     files.add_file("index.html", &root.join("index.html"))?;
     files.add_folder("www", &root.join("www"))?;
+    Compiling::begin(dev, None)?.end()?;
     for bundle in &BUNDLES {
-        let wasm = compile(bundle, dev)?;
-        files.add_folder("pkg", &bind(bundle, &wasm, dev)?)?;
+        files.add_folder("pkg", &bind(bundle, dev)?)?;
     }
     add_service_worker(&mut files)?;
     dist::write(&files, &folder())?;
@@ -60,28 +61,63 @@ fn add_service_worker(files: &mut dist::Files) -> Result<()> {
     Ok(())
 }
 
-/// Compiles the crate with the bundle's feature and returns the path of the wasm.
-///
+/// The crate being compiled with the feature of each bundle, all at the same time: optimising one at link time keeps only
+/// one core busy. Profiles have folders of their own, so that no Cargo waits for the other.
+pub struct Compiling(Vec<(Command, Child)>);
+
+impl Compiling {
+    /// Starts. What the compilations print goes to a file, if there is one.
+    pub fn begin(dev: bool, said: Option<&File>) -> Result<Self> {
+        let mut running = Self(Vec::new());
+        for bundle in &BUNDLES {
+            let mut command = compilation(bundle, dev);
+            if let Some(file) = said {
+                command.stdout(file.try_clone()?).stderr(file.try_clone()?);
+            }
+            let child = shell::start(&mut command)?;
+            running.0.push((command, child));
+        }
+        Ok(running)
+    }
+
+    /// Waits for all of them.
+    pub fn end(&mut self) -> Result<()> {
+        let ended: Vec<Result<()>> = self.0.iter_mut().map(|(command, child)| shell::wait(command, child)).collect();
+        ended.into_iter().collect()
+    }
+}
+
+/// What is no longer wanted is stopped.
+impl Drop for Compiling {
+    fn drop(&mut self) {
+        for (_, child) in &mut self.0 {
+            let _ = child.kill();
+            let _ = child.wait();
+        }
+    }
+}
+
 /// The quick way uses the profile of tests, so that most of what it needs is there already. The other asks for the wasm
 /// alone: beside a library for Rust, Cargo leaves out optimisation at link time.
-fn compile(bundle: &Bundle, dev: bool) -> Result<PathBuf> {
+fn compilation(bundle: &Bundle, dev: bool) -> Command {
     let (verb, profile) = if dev { ("build", "dev") } else { ("rustc", bundle.name) };
     let mut cargo = shell::cargo([verb, "--lib", "--target", WASM, "--no-default-features"]);
     cargo.args(["--features", bundle.name, "--profile", profile]);
     if !dev {
         cargo.args(["--crate-type", "cdylib"]);
     }
-    shell::run(cargo)?;
-    let folder = if dev { "debug" } else { bundle.name };
-    Ok(shell::target().join(WASM).join(folder).join("sinew.wasm"))
+    // Two bars on one line cannot be read.
+    cargo.env("CARGO_TERM_PROGRESS_WHEN", "never");
+    cargo
 }
 
 /// Runs wasm-bindgen, unless it has already run on just this file, and returns the folder with what it wrote.
-fn bind(bundle: &Bundle, wasm: &Path, dev: bool) -> Result<PathBuf> {
+fn bind(bundle: &Bundle, dev: bool) -> Result<PathBuf> {
     let name = bundle.name;
+    let wasm = shell::target().join(WASM).join(if dev { "debug" } else { name }).join("sinew.wasm");
     let folder = shell::target().join("xtask").join(if dev { format!("{name}-dev") } else { name.to_owned() });
     let (output, stamp) = (folder.join("pkg"), folder.join("stamp"));
-    let mark = mark(wasm)?;
+    let mark = mark(&wasm)?;
     if fs::read_to_string(&stamp).is_ok_and(|old| old == mark) {
         return Ok(output);
     }
@@ -94,7 +130,7 @@ fn bind(bundle: &Bundle, wasm: &Path, dev: bool) -> Result<PathBuf> {
     if !dev {
         bindgen.remove_name_section(true);
     }
-    bindgen.input_path(wasm).out_name(name).generate(&output).context("wasm-bindgen failed")?;
+    bindgen.input_path(&wasm).out_name(name).generate(&output).context("wasm-bindgen failed")?;
     fs::write(stamp, mark)?;
     Ok(output)
 }

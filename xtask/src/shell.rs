@@ -2,7 +2,7 @@
 
 use anyhow::{Context, Result, bail};
 use std::path::{Path, PathBuf};
-use std::process::{Command, Stdio};
+use std::process::{Child, Command, Stdio};
 
 /// The root of the project.
 pub fn root() -> PathBuf {
@@ -31,9 +31,20 @@ pub fn cargo<'a>(arguments: impl IntoIterator<Item = &'a str>) -> Command {
 
 /// Runs to the end; anything but success is an error that names what ran.
 pub fn run(mut command: Command) -> Result<()> {
-    let status = command.status().with_context(|| format!("`{}` cannot be started", line(&command)))?;
+    let mut child = start(&mut command)?;
+    wait(&command, &mut child)
+}
+
+/// Starts a program beside this one.
+pub fn start(command: &mut Command) -> Result<Child> {
+    command.spawn().with_context(|| format!("`{}` cannot be started", line(command)))
+}
+
+/// Waits for the end of what a command has started; anything but success is an error that names what ran.
+pub fn wait(command: &Command, child: &mut Child) -> Result<()> {
+    let status = child.wait().with_context(|| format!("`{}` cannot be waited for", line(command)))?;
     if !status.success() {
-        bail!("`{}` failed ({status})", line(&command));
+        bail!("`{}` failed ({status})", line(command));
     }
     Ok(())
 }
