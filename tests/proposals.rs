@@ -65,6 +65,13 @@ fn a_trunk_is_not_taken_for_a_tail() {
     check(&zoo_case("elephant", "cat"), &[(0, 4.0, 15.0), (3, 4.0, 10.0)]);
 }
 
+/// A giraffe's neck reaches where, laid over it as they stand, a cat's forelegs are.
+#[test]
+fn legs_are_not_taken_for_a_long_neck() {
+    check(&zoo_case("cat", "giraffe"), &[(3, 4.0, 15.0)]);
+    check(&zoo_case("giraffe", "cat"), &[(3, 4.0, 15.0)]);
+}
+
 #[test]
 fn bodies_and_animals() {
     let Some(data) = npz::data("proposals on bodies and animals") else { return };

@@ -2,7 +2,7 @@
 //!
 //! Both surfaces are thinned out to samples with all distances between them (`surface`). A spread of the source's
 //! samples and the points asked for look for their places together (`consensus`), from several starts (`starts`):
-//! the figures laid over each other as they stand, stretched to the same box, turned, or as the given pairs say; the
+//! the figures laid over each other as they stand, stretched to the same box, turned, or pulled to given pairs; the
 //! outcome in which points agree best with each other counts. Given pairs stay as they are and are listened to more.
 //!
 //! The idea of drawing points to places with the right distances to others is that of quadratic assignment (J. Maciel

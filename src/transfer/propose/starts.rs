@@ -12,6 +12,9 @@ const FACING: f64 = 0.02;
 /// How far a stretch to the target's box may go, either way, from its mean.
 const STRETCH: [f64; 2] = [0.6, 1.6];
 
+/// Within this distance of a given pair, what it says counts about the same.
+const PULL: f64 = 0.2;
+
 /// How much better another turn than none must end.
 const CLEARLY: f64 = 0.85;
 
@@ -84,6 +87,17 @@ fn misfit(stand: &Stand, given: &[(f64, DVec3, DVec3)]) -> f64 {
     given.iter().map(off).sum()
 }
 
+/// By how much given pairs move what is near them once `map` has laid the source over the target: without it, the legs
+/// of a creature whose neck is much longer lie nearest to the other's neck.
+///
+/// Inverse distance weighting (D. Shepard, *A two-dimensional interpolation function for irregularly-spaced data*,
+/// Proceedings of the 23rd ACM National Conference, 1968, pp. 517–524), softened.
+fn pull(given: &[(f64, DVec3, DVec3)], map: DMat3, place: DVec3) -> DVec3 {
+    let weight = |from: DVec3| (place.distance_squared(from) + PULL * PULL).powi(-2);
+    let total: f64 = given.iter().map(|&(_, from, _)| weight(from)).sum();
+    given.iter().map(|&(_, from, to)| weight(from) / total * (to - map * from)).sum()
+}
+
 /// The start that ends best, of those that lay the figures over each other in one way.
 fn best_of(proposer: &Proposer, crowd: &Crowd, stand: &Stand, given: &[(f64, DVec3, DVec3)]) -> Start {
     let mut starts: Vec<Vec<Option<u32>>> = Vec::new();
@@ -98,9 +112,10 @@ fn best_of(proposer: &Proposer, crowd: &Crowd, stand: &Stand, given: &[(f64, DVe
         }
         starts.push(at);
     }
-    if given.len() >= 3 {
-        let motion = Similarity::fit(given.iter().copied());
-        starts.push(lay(&|p| motion.apply(p), motion.rotation));
+    if !given.is_empty() {
+        for map in stand.maps {
+            starts.push(lay(&|p| map * p + pull(given, map, p), map));
+        }
     }
     let schedules: [&[Rules]; 2] = [
         &[rules(1.0, 0.75), rules(0.5, 0.75), rules(0.3, 0.75), rules(0.2, 0.75)],
