@@ -20,6 +20,12 @@ export function panel(host, app, above) {
     open.hidden = app.panel;
     document.documentElement.dataset.panel = app.panel ? 'open' : 'away';
   };
+  let figure = app.target.sequence;
   app.on('step panel', update);
+  app.on('target', () => {
+    // What a new target brings stands above the creatures from which it was chosen.
+    if (app.target.sequence && figure !== app.target.sequence) host.scrollTop = 0;
+    figure = app.target.sequence;
+  });
   update();
 }

@@ -22,9 +22,12 @@ pub fn proposed(backend: Backend, screen: Screen) -> Page {
     // With as few faces as the source; on one of the two backends as a visitor opens it.
     match backend {
         Backend::WebGpu => page.click("#target-camel"),
-        Backend::WebGl2 => drop(page.evaluate("void sinew.app.target.openCreature({ name: 'camel', faces: 3000 })")),
+        Backend::WebGl2 => drop(
+            page.evaluate("panel.scrollTop = 200, void sinew.app.target.openCreature({ name: 'camel', faces: 3000 })"),
+        ),
     }
     page.wait_until(&format!("sinew.state().moves && sinew.state().tally.missing === 0 && {IDLE}"), PATIENT);
+    assert_eq!(page.evaluate("panel.scrollTop"), 0, "what the target brings is read from its beginning");
     page
 }
 

@@ -45,6 +45,9 @@ fn everything_has_its_place_on_a_phone() {
     page.screenshot("sheet");
     nothing_clashes(&mut page, "with the sheet");
     assert_eq!(page.evaluate("panel.scrollTop = 100, panel.scrollTop"), 100, "there is more than fits");
+    let heading = "document.querySelector('.panel-body:not([hidden]) h2').getBoundingClientRect().top";
+    let from_top = page.evaluate(&format!("Math.abs({heading} - panel.getBoundingClientRect().top)"));
+    assert!(from_top.as_f64().is_some_and(|far| far < 3.0), "the heading stays: {from_top}");
     page.evaluate("document.querySelectorAll('.step-button')[1].click()");
     page.wait_until("sinew.state().step === 'parts'", 2.0);
     assert_eq!(page.evaluate("panel.scrollTop"), 0, "a step is read from its beginning");
