@@ -4,6 +4,8 @@
 //! samples and the points asked for look for their places together (`consensus`), from several starts (`starts`):
 //! the figures laid over each other as they stand, stretched to the same box, turned, or pulled to given pairs; the
 //! outcome in which points agree best with each other counts. Given pairs stay as they are and are listened to more.
+//! Where tips of both figures (`tips`) have come to lie next to each other, they are laid on each other, and the points
+//! agree once more: limbs of other lengths are then followed to their ends. The rest is for the surfaces (`refine`).
 //!
 //! The idea of drawing points to places with the right distances to others is that of quadratic assignment (J. Maciel
 //! and J. P. Costeira, *A global solution to sparse correspondence problems*, IEEE Transactions on Pattern Analysis and
@@ -32,8 +34,14 @@ const CONSIDERED: usize = 400;
 /// How far points listen in the rounds that find the places.
 const REACHES: [f64; 7] = [0.2, 0.15, 0.12, 0.1, 0.1, 0.1, 0.1];
 
+/// And in those after tips that have met are held.
+const REACHES_WITH_TIPS: [f64; 4] = [0.1; 4];
+
 /// How much is listened to a point asked for, where a sample counts one: users' points may lie close together.
 const ASKED: f64 = 0.3;
+
+/// And to one whose place is known.
+const GIVEN: f64 = 3.0;
 
 /// Opinions that are not farther apart than this are both half right.
 const ALIKE: f64 = 0.04;
@@ -120,18 +128,21 @@ impl Proposer {
         self.check(points, known)?;
         let crowd = self.crowd(COMPANY[0], points, known);
         let start = starts::best(self, &crowd);
-        let crowd = self.crowd(COMPANY[1], points, known);
-        let mut consensus = Consensus::new(
-            &self.target,
-            self.target.len(),
-            &crowd.points,
-            &crowd.distances,
-            start.spread(crowd.points.len(), COMPANY, points.len()),
-        );
-        for reach in REACHES {
-            consensus.round(&Rules { reach, ..LAST });
+        let mut crowd = self.crowd(COMPANY[1], points, known);
+        let at = start.spread(crowd.points.len(), COMPANY, points.len());
+        let at = self.agree(&crowd, at, &REACHES).at;
+        for (tip, other) in tips::met(&self.source, &self.target, crowd.company, &at) {
+            let place = || self.place(self.target.samples[other as usize]);
+            crowd.points[tip as usize].given.get_or_insert_with(place);
         }
-        Ok(self.read(&consensus, points, known))
+        Ok(self.read(&self.agree(&crowd, at, &REACHES_WITH_TIPS), points, known))
+    }
+
+    /// The rounds in which a crowd moves from the places `at`, one for each reach.
+    fn agree<'a>(&'a self, crowd: &'a Crowd, at: Vec<Option<u32>>, reaches: &[f64]) -> Consensus<'a> {
+        let mut consensus = Consensus::new(&self.target, self.target.len(), &crowd.points, &crowd.distances, at);
+        reaches.iter().for_each(|&reach| consensus.round(&Rules { reach, ..LAST }));
+        consensus
     }
 
     fn check(&self, points: &[u32], known: &[Option<u32>]) -> Result<(), ProposeError> {
@@ -169,7 +180,11 @@ impl Proposer {
             place: source.points[v as usize],
             normal: source.vertex_normals[v as usize],
             remote: source.readings[v as usize].iter().map(|&(s, w)| w * source.remote[s as usize]).sum(),
-            weight: if i < company { 1.0 } else { ASKED },
+            weight: match given {
+                Some(_) => GIVEN,
+                None if i < company => 1.0,
+                None => ASKED,
+            },
             given,
         });
         Crowd { points: points.collect(), distances, company }

@@ -17,9 +17,6 @@ const LISTENS: usize = 48;
 /// How far the scale around a point may differ from the scale of all.
 const LOCAL_SCALE: [f64; 2] = [0.7, 1.4];
 
-/// How much more a given place counts than a found one.
-const GIVEN: f64 = 3.0;
-
 /// How listening falls with the squared distance along the surface.
 const FALL: f64 = 1.5;
 
@@ -44,7 +41,7 @@ pub struct Point {
     pub remote: f32,
     /// How much others listen to it.
     pub weight: f64,
-    /// The place it has on the target, if that is given.
+    /// The place it has on the target, if that is given or, for a tip, found.
     pub given: Option<Target>,
 }
 
@@ -198,8 +195,7 @@ impl<'a> Consensus<'a> {
         let weight = |j: usize| {
             let far = f64::from(row[j]);
             let point = &self.points[j];
-            let given = if point.given.is_some() { GIVEN } else { point.weight };
-            given * self.trust[j] / (far * far + rules.reach * rules.reach).powf(FALL)
+            point.weight * self.trust[j] / (far * far + rules.reach * rules.reach).powf(FALL)
         };
         let others = (0..n).filter(|&j| j != i && self.at[j].is_some());
         let mut heard: Vec<(u32, f64)> = others.map(|j| (j as u32, weight(j))).collect();

@@ -2,14 +2,18 @@
 //!
 //! A tip is farther from the rest of the surface than all around it (hands, feet, head, tail). Between figures of one
 //! build, tips keep their distances along the surface however the limbs are held; what these leave open (left and right)
-//! the places decide.
+//! the places decide. That gives places to begin with ([`assign`]). In the end, the tips that have come to lie nearest to
+//! each other are partners ([`met`]).
 
 use super::Crowd;
 use super::surface::Surface;
 use glam::{DMat3, DVec3};
 
 /// Within this distance (a share of the diagonal) a tip is the farthest.
-const AROUND: f32 = 0.15;
+const AROUND: f32 = 0.2;
+
+/// Tips that lie farther from each other have not met.
+const MEETING: f32 = 0.25;
 
 /// Tips that take part.
 const MOST: usize = 12;
@@ -68,6 +72,23 @@ pub fn assign(source: &Surface, target: &Surface, crowd: &Crowd, map: DMat3) -> 
     }
     let best = beam.into_iter().next().map(|b| b.1).unwrap_or_default();
     own.iter().zip(best).filter_map(|(&tip, partner)| Some((tip, partner?))).collect()
+}
+
+/// Tips of both whose places have come to lie nearest to each other's, `at` (#crowd) being where the crowd is.
+///
+/// Returns (member of the crowd's company, sample of the target).
+pub fn met(source: &Surface, target: &Surface, company: usize, at: &[Option<u32>]) -> Vec<(u32, u32)> {
+    let own: Vec<(u32, u32)> =
+        tips(source, company).into_iter().filter_map(|tip| Some((tip, at[tip as usize]?))).collect();
+    let others = tips(target, company);
+    let far = |place: u32, other: u32| target.row(place)[other as usize];
+    let nearest_other = |place: u32| others.iter().copied().min_by(|&a, &b| far(place, a).total_cmp(&far(place, b)));
+    let nearest_own = |other: u32| own.iter().min_by(|a, b| far(a.1, other).total_cmp(&far(b.1, other)));
+    let pair = |&(tip, place): &(u32, u32)| {
+        let other = nearest_other(place).filter(|&other| far(place, other) < MEETING)?;
+        (nearest_own(other)?.0 == tip).then_some((tip, other))
+    };
+    own.iter().filter_map(pair).collect()
 }
 
 fn apart(from: DVec3, to: DVec3, map: DMat3) -> f64 {
