@@ -40,8 +40,14 @@ pub fn build(dev: bool) -> Result<()> {
     let mut files = dist::Files::default();
     files.add_file("index.html", &root.join("index.html"))?;
     files.add_folder("www", &root.join("www"))?;
-    Compiling::begin(dev, None)?.end()?;
+    if !dev {
+        Compiling::begin(None)?.end()?;
+    }
     for bundle in &BUNDLES {
+        // The quick way's bundles are one file, one after the other.
+        if dev {
+            shell::run(compilation(bundle, dev))?;
+        }
         files.add_folder("pkg", &bind(bundle, dev)?)?;
     }
     add_service_worker(&mut files)?;
@@ -61,16 +67,16 @@ fn add_service_worker(files: &mut dist::Files) -> Result<()> {
     Ok(())
 }
 
-/// The crate being compiled with the feature of each bundle, all at the same time: optimising one at link time keeps only
-/// one core busy. Profiles have folders of their own, so that no Cargo waits for the other.
+/// The crate being compiled for release with the feature of each bundle, all at the same time: optimising one at link time
+/// keeps only one core busy. Profiles have folders of their own, so that no Cargo waits for the other.
 pub struct Compiling(Vec<(Command, Child)>);
 
 impl Compiling {
     /// Starts. What the compilations print goes to a file, if there is one.
-    pub fn begin(dev: bool, said: Option<&File>) -> Result<Self> {
+    pub fn begin(said: Option<&File>) -> Result<Self> {
         let mut running = Self(Vec::new());
         for bundle in &BUNDLES {
-            let mut command = compilation(bundle, dev);
+            let mut command = compilation(bundle, false);
             if let Some(file) = said {
                 command.stdout(file.try_clone()?).stderr(file.try_clone()?);
             }

@@ -172,7 +172,7 @@ impl Build {
         fs::create_dir_all(&folder)?;
         let said = folder.join("build.log");
         let file = File::create(&said).with_context(|| format!("{} cannot be written", said.display()))?;
-        Ok(Self { compiling: Compiling::begin(false, Some(&file))?, said })
+        Ok(Self { compiling: Compiling::begin(Some(&file))?, said })
     }
 
     fn end(&mut self) -> Result<Tally> {
