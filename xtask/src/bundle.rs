@@ -11,7 +11,7 @@
 use crate::setup::{self, WASM};
 use crate::{dist, shell};
 use anyhow::{Context, Result, bail};
-use std::fs::{self, File};
+use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::{Child, Command};
 use std::time::{Instant, UNIX_EPOCH};
@@ -41,7 +41,7 @@ pub fn build(dev: bool) -> Result<()> {
     files.add_file("index.html", &root.join("index.html"))?;
     files.add_folder("www", &root.join("www"))?;
     if !dev {
-        Compiling::begin(None)?.end()?;
+        compile_all()?;
     }
     for bundle in &BUNDLES {
         // The quick way's bundles are one file, one after the other.
@@ -67,40 +67,20 @@ fn add_service_worker(files: &mut dist::Files) -> Result<()> {
     Ok(())
 }
 
-/// The crate being compiled for release with the feature of each bundle, all at the same time: optimising one at link time
-/// keeps only one core busy. Profiles have folders of their own, so that no Cargo waits for the other.
-pub struct Compiling(Vec<(Command, Child)>);
-
-impl Compiling {
-    /// Starts. What the compilations print goes to a file, if there is one.
-    pub fn begin(said: Option<&File>) -> Result<Self> {
-        let mut running = Self(Vec::new());
-        for bundle in &BUNDLES {
-            let mut command = compilation(bundle, false);
-            if let Some(file) = said {
-                command.stdout(file.try_clone()?).stderr(file.try_clone()?);
-            }
-            let child = shell::start(&mut command)?;
-            running.0.push((command, child));
-        }
-        Ok(running)
-    }
-
-    /// Waits for all of them.
-    pub fn end(&mut self) -> Result<()> {
-        let ended: Vec<Result<()>> = self.0.iter_mut().map(|(command, child)| shell::wait(command, child)).collect();
-        ended.into_iter().collect()
-    }
-}
-
-/// What is no longer wanted is stopped.
-impl Drop for Compiling {
-    fn drop(&mut self) {
-        for (_, child) in &mut self.0 {
-            let _ = child.kill();
-            let _ = child.wait();
-        }
-    }
+/// Compiles the crate for release with the feature of each bundle, all at the same time: optimising one at link time keeps
+/// only one core busy. Profiles have folders of their own, so that no Cargo waits for the other.
+fn compile_all() -> Result<()> {
+    let start = |bundle| {
+        let mut command = compilation(bundle, false);
+        // Two bars on one line cannot be read.
+        command.env("CARGO_TERM_PROGRESS_WHEN", "never");
+        let child = shell::start(&mut command);
+        (command, child)
+    };
+    let running: Vec<_> = BUNDLES.iter().map(start).collect();
+    let wait = |(command, child): (Command, Result<Child>)| shell::wait(&command, &mut child?);
+    let ended: Vec<Result<()>> = running.into_iter().map(wait).collect();
+    ended.into_iter().collect()
 }
 
 /// The quick way uses the profile of tests, so that most of what it needs is there already. The other asks for the wasm
@@ -112,8 +92,6 @@ fn compilation(bundle: &Bundle, dev: bool) -> Command {
     if !dev {
         cargo.args(["--crate-type", "cdylib"]);
     }
-    // Two bars on one line cannot be read.
-    cargo.env("CARGO_TERM_PROGRESS_WHEN", "never");
     cargo
 }
 

@@ -1,17 +1,14 @@
 //! `cargo xtask test`: everything that must hold, one step after the other, up to the first that fails.
 //!
 //! The order is by how soon a step can fail. What steps compile is shared as far as it goes: lints and documentation
-//! use the same metadata, the browser's wasm tests the same development profile as `build --dev`. The page's profiles
-//! share nothing with them, so it is built beside the other steps, which do not keep all cores busy.
+//! use the same metadata, the browser's wasm tests the same development profile as `build --dev`.
 
-use crate::bundle::{self, Compiling};
 use crate::server::Server;
 use crate::setup::{self, WASM};
-use crate::shell;
+use crate::{bundle, shell};
 use anyhow::{Context, Result, bail};
-use std::fs::{self, File};
 use std::io::{BufRead, BufReader, Write};
-use std::path::{Path, PathBuf};
+use std::path::Path;
 use std::process::{Command, Stdio};
 use std::time::Instant;
 
@@ -38,17 +35,17 @@ const SEED: &str = "PROPTEST_RNG_SEED";
 const PLAYERS: &str = "players::";
 
 /// A step: what it is called, and what it does. A step with tests says how many; any other counts as one.
-type Step = (&'static str, fn(&mut Build) -> Result<Tally>);
+type Step = (&'static str, fn() -> Result<Tally>);
 
 const STEPS: [Step; 8] = [
-    ("format", |_| format()),
-    ("lints, native", |_| lint_native()),
-    ("lints, wasm32", |_| lint_wasm()),
-    ("documentation", |_| document()),
-    ("tests, native", |_| test_native()),
-    ("tests as wasm, in a page and in a worker", |_| test_wasm()),
-    ("build of the page, begun with the first step", Build::end),
-    ("the page in Chromium, on WebGPU and on WebGL2", |_| test_page()),
+    ("format", format),
+    ("lints, native", lint_native),
+    ("lints, wasm32", lint_wasm),
+    ("documentation", document),
+    ("tests, native", test_native),
+    ("tests as wasm, in a page and in a worker", test_wasm),
+    ("build of the page", build),
+    ("the page in Chromium, on WebGPU and on WebGL2", test_page),
 ];
 
 /// Runs all the steps, prints how long each took, and ends with one line of numbers.
@@ -57,14 +54,13 @@ pub fn test() -> Result<()> {
     setup::wasm_target()?;
     setup::wasm_bindgen_version()?;
     setup::browser()?;
-    let mut build = Build::begin()?;
     let mut total = Tally::default();
     let mut times = Vec::new();
     let mut failure = None;
     for (number, (name, step)) in STEPS.iter().enumerate() {
         println!("\n== {} of {}: {name}", number + 1, STEPS.len());
         let begin = Instant::now();
-        let result = step(&mut build);
+        let result = step();
         times.push((name, begin.elapsed().as_secs_f64(), result.is_ok()));
         match result {
             Ok(tally) => total.add(tally),
@@ -160,28 +156,9 @@ fn test_wasm() -> Result<Tally> {
     count(cargo)
 }
 
-/// The page, compiled beside the other steps. What that prints is kept until its step comes.
-struct Build {
-    compiling: Compiling,
-    said: PathBuf,
-}
-
-impl Build {
-    fn begin() -> Result<Self> {
-        let folder = shell::target().join("xtask");
-        fs::create_dir_all(&folder)?;
-        let said = folder.join("build.log");
-        let file = File::create(&said).with_context(|| format!("{} cannot be written", said.display()))?;
-        Ok(Self { compiling: Compiling::begin(Some(&file))?, said })
-    }
-
-    fn end(&mut self) -> Result<Tally> {
-        let compiled = self.compiling.end();
-        print!("{}", fs::read_to_string(&self.said).unwrap_or_default());
-        compiled?;
-        bundle::build(false)?;
-        Ok(Tally { passed: 1, ..Tally::default() })
-    }
+fn build() -> Result<Tally> {
+    bundle::build(false)?;
+    Ok(Tally { passed: 1, ..Tally::default() })
 }
 
 /// The page is served from deep inside a host, so that an address that is not relative is found out. As many tests run
