@@ -348,25 +348,21 @@ fn on_cloth(creature: &Creature, along: f64, up: f64) -> Option<u32> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::zoo::{Recipe, make};
+    use crate::zoo::tests::creature;
     use std::collections::BTreeSet;
 
     const MEASURED: [&str; 10] =
         ["horse", "camel", "giraffe", "dog", "cat", "person", "person-arms-out", "dinosaur", "snake", "hand"];
 
-    fn creature(name: &str, faces: usize) -> Creature {
-        make(&Recipe { name: name.into(), faces, poses: 1, exact: false, ..Recipe::default() }).unwrap()
-    }
-
     #[test]
     fn every_creature_has_its_places_at_every_size() {
         for name in MEASURED {
             let fine = creature(name, 40_000);
-            let there = landmarks(&fine);
+            let there = landmarks(fine);
             assert!(there.len() >= 18 && there.len() == places(name).len(), "{name}: {}", there.len());
             for faces in [2_000, 12_000] {
                 let coarse = creature(name, faces);
-                let here = landmarks(&coarse);
+                let here = landmarks(coarse);
                 let distinct: BTreeSet<u32> = here.iter().map(|place| place.1).collect();
                 assert_eq!(distinct.len(), there.len(), "{name}, {faces} faces: every place has a vertex of its own");
                 let diagonal = fine.sequence.diagonal();
@@ -383,7 +379,7 @@ mod tests {
     fn left_is_left_and_mirrored() {
         for name in ["horse", "camel", "giraffe", "dog", "cat", "person", "dinosaur"] {
             let creature = creature(name, 12_000);
-            let places = landmarks(&creature);
+            let places = landmarks(creature);
             for &(label, v) in places.iter().filter(|place| place.0.starts_with("left")) {
                 let other = places.iter().find(|place| place.0 == label.replace("left", "right")).unwrap();
                 let (left, right) = (creature.made[v as usize], creature.made[other.1 as usize]);
@@ -399,14 +395,14 @@ mod tests {
         for (from, to, number) in
             [("horse", "camel", 25), ("person", "dinosaur", 24), ("snake", "hand", 18), ("hand", "snake", 18)]
         {
-            let (a, b) = (creature(from, 8_000), creature(to, 9_000));
-            let pairs = landmark_pairs(&a, &b);
+            let (a, b) = (creature(from, 12_000), creature(to, 9_000));
+            let pairs = landmark_pairs(a, b);
             assert_eq!(pairs.len(), number, "{from} to {to}");
             for ends in [pairs.iter().map(|p| p.1).collect::<BTreeSet<_>>(), pairs.iter().map(|p| p.2).collect()] {
                 assert_eq!(ends.len(), number, "{from} to {to}: no vertex twice");
             }
         }
-        assert!(landmark_pairs(&creature("horse", 1000), &creature("hand", 1000)).is_empty());
+        assert!(landmark_pairs(creature("horse", 1_000), creature("hand", 1_000)).is_empty());
     }
 
     #[test]
@@ -418,12 +414,12 @@ mod tests {
         };
         let extent = |c: &Creature| c.made.iter().fold((1e9_f64, -1e9_f64), |(l, h), p| (l.min(p.z), h.max(p.z)));
         for (c, front, back) in
-            [(&dinosaur, "nose", "tail tip"), (&hand, "middle fingertip", "elbow"), (&snake, "snout", "tail tip")]
+            [(dinosaur, "nose", "tail tip"), (hand, "middle fingertip", "elbow"), (snake, "snout", "tail tip")]
         {
             let (low, high) = extent(c);
             let slack = 0.02 * (high - low);
             assert!((at(c, front).z - high).abs() < slack && (at(c, back).z - low).abs() < slack);
         }
-        assert!(at(&hand, "palm").x < 0.0 && at(&hand, "thumb tip").y > at(&hand, "index fingertip").y);
+        assert!(at(hand, "palm").x < 0.0 && at(hand, "thumb tip").y > at(hand, "index fingertip").y);
     }
 }

@@ -4,13 +4,26 @@ use super::*;
 use crate::mesh::DualGraph;
 use glam::{DMat3, DVec2};
 use std::collections::BTreeMap;
+use std::sync::{Mutex, OnceLock};
 
 fn recipe(name: &str, faces: usize, exact: bool) -> Recipe {
     Recipe { name: name.into(), faces, poses: 8, exact, ..Recipe::default() }
 }
 
-fn every(faces: usize, exact: bool) -> impl Iterator<Item = (&'static str, Creature)> {
-    NAMES.iter().map(move |&name| (name, make(&recipe(name, faces, exact)).unwrap()))
+/// What [`make`] makes, once for all tests.
+fn made(recipe: &Recipe) -> &'static Creature {
+    static MADE: Mutex<BTreeMap<String, &'static OnceLock<Creature>>> = Mutex::new(BTreeMap::new());
+    let place = *MADE.lock().unwrap().entry(format!("{recipe:?}")).or_insert_with(|| Box::leak(Box::default()));
+    place.get_or_init(|| make(recipe).unwrap())
+}
+
+/// A creature in eight poses, as most tests look at it.
+pub(super) fn creature(name: &str, faces: usize) -> &'static Creature {
+    made(&recipe(name, faces, false))
+}
+
+fn every(faces: usize, exact: bool) -> impl Iterator<Item = (&'static str, &'static Creature)> {
+    NAMES.iter().map(move |&name| (name, made(&recipe(name, faces, exact))))
 }
 
 /// The mesh is made with the mesher once for those that differ only in pose or proportions.
@@ -103,12 +116,12 @@ fn meshes_are_closed_and_well_shaped_at_every_size() {
         (100_000, vec!["horse", "hand", "cactus"]),
     ] {
         for name in names {
-            let creature = make(&recipe(name, faces, false)).unwrap();
-            let made = creature.sequence.faces();
-            let off = made.len() as f64 / faces as f64 - 1.0;
-            assert!(off.abs() < 0.15, "{name}: {} faces instead of {faces}", made.len());
-            check_closed(name, &creature.made, made);
-            let angles = angles(&creature.made, made);
+            let creature = creature(name, faces);
+            let got = creature.sequence.faces();
+            let off = got.len() as f64 / faces as f64 - 1.0;
+            assert!(off.abs() < 0.15, "{name}: {} faces instead of {faces}", got.len());
+            check_closed(name, &creature.made, got);
+            let angles = angles(&creature.made, got);
             let quantile = |share: f64| angles[(share * angles.len() as f64) as usize];
             assert!(quantile(0.0) > 0.5, "{name} {faces}: smallest angle {}", quantile(0.0));
             assert!(quantile(0.01) > 12.0, "{name} {faces}: 1 % quantile {}", quantile(0.01));
@@ -120,10 +133,9 @@ fn meshes_are_closed_and_well_shaped_at_every_size() {
 #[test]
 fn the_robot_is_closed_and_the_cloth_is_a_sheet() {
     for faces in [1_000, 12_000] {
-        let robot = make(&recipe("robot", faces, false)).unwrap();
+        let [robot, cloth] = ["robot", "cloth"].map(|name| creature(name, faces));
         check_closed("robot", &robot.made, robot.sequence.faces());
-        let cloth = make(&recipe("cloth", faces, false)).unwrap();
-        for (name, creature) in [("robot", &robot), ("cloth", &cloth)] {
+        for (name, creature) in [("robot", robot), ("cloth", cloth)] {
             let angles = angles(&creature.made, creature.sequence.faces());
             assert!(
                 angles[0] > 0.5 && angles[angles.len() / 2] > 30.0,
@@ -169,9 +181,8 @@ fn weights_are_few_and_sum_to_one() {
 
 #[test]
 fn every_part_has_a_share_of_the_surface() {
-    for exact in [false, true] {
-        for &name in NAMES {
-            let creature = make(&recipe(name, 6_000, exact)).unwrap();
+    for (faces, exact) in [(12_000, false), (6_000, true)] {
+        for (name, creature) in every(faces, exact) {
             let mut areas = vec![0.0; creature.parts.len()];
             for (face, &label) in creature.sequence.faces().iter().zip(&creature.labels) {
                 areas[label as usize] += area(face.map(|v| creature.made[v as usize]));
@@ -199,7 +210,7 @@ fn turn(from: [DVec3; 3], to: [DVec3; 3]) -> DMat3 {
 #[test]
 fn exact_parts_are_rigid_and_move_against_each_other() {
     for name in jointed() {
-        let creature = make(&recipe(name, 4_000, true)).unwrap();
+        let creature = made(&recipe(name, 6_000, true));
         let reference = creature.sequence.reference();
         let mut turns = Vec::new();
         for part in 0..creature.parts.len() as u32 {
@@ -281,23 +292,23 @@ fn gaits_return_to_their_start_and_planted_feet_stay_planted() {
 
 #[test]
 fn the_two_persons_are_one_mesh_in_two_poses() {
-    let [down, out] = ["person", "person-arms-out"].map(|name| make(&recipe(name, 3_000, false)).unwrap());
+    let [down, out] = ["person", "person-arms-out"].map(|name| creature(name, 3_000));
     assert_eq!(down.sequence.faces(), out.sequence.faces());
     assert_eq!(down.sequence.poses(), out.sequence.poses());
     let width = |c: &Creature| c.sequence.reference().iter().map(|p| p.x).fold(0.0, f64::max);
-    assert!(width(&out) > 1.6 * width(&down));
+    assert!(width(out) > 1.6 * width(down));
 }
 
 #[test]
 fn correspondences_lie_on_the_same_bones() {
     for (a, b, least) in [("horse", "camel", 60), ("camel", "horse", 60), ("person", "person-arms-out", 40)] {
-        let a = make(&recipe(a, 12_000, false)).unwrap();
-        let b = make(&Recipe { faces: 9_000, ..recipe(b, 0, false) }).unwrap();
-        let pairs = correspondences(&a, &b, least);
+        let a = creature(a, 12_000);
+        let b = creature(b, 9_000);
+        let pairs = correspondences(a, b, least);
         assert_eq!(pairs.len(), least);
         for &(v, w) in &pairs {
             let bone = |c: &Creature, v: u32| c.parts[c.weights[v as usize][0].0 as usize].clone();
-            assert_eq!(bone(&a, v), bone(&b, w));
+            assert_eq!(bone(a, v), bone(b, w));
         }
         let bones: std::collections::BTreeSet<u32> = pairs.iter().map(|p| a.weights[p.0 as usize][0].0).collect();
         assert!(bones.len() * 5 > a.parts.len() * 4, "most bones have a point: {} of {}", bones.len(), a.parts.len());
@@ -311,8 +322,8 @@ fn correspondences_lie_on_the_same_bones() {
             .fold(f64::INFINITY, f64::min);
         assert!(closest > 0.03, "far apart: {closest}");
     }
-    let [horse, snake] = ["horse", "snake"].map(|name| make(&recipe(name, 1_000, false)).unwrap());
-    assert!(correspondences(&horse, &snake, 10).is_empty());
+    let [horse, snake] = ["horse", "snake"].map(|name| creature(name, 1_000));
+    assert!(correspondences(horse, snake, 10).is_empty());
 }
 
 #[test]
@@ -332,17 +343,19 @@ fn recipes_are_brought_into_range() {
 }
 
 /// Every creature in every motion, small.
-fn every_motion() -> impl Iterator<Item = (&'static str, &'static str, Creature)> {
+fn every_motion() -> impl Iterator<Item = (&'static str, &'static str, &'static Creature)> {
     motions_where(|_, _| true)
 }
 
-/// The same, only those of which `wanted` says so by name and motion.
-fn motions_where(wanted: impl Fn(&str, &str) -> bool) -> impl Iterator<Item = (&'static str, &'static str, Creature)> {
+/// The same, but only those of which `wanted` says so by name and motion.
+fn motions_where(
+    wanted: impl Fn(&str, &str) -> bool,
+) -> impl Iterator<Item = (&'static str, &'static str, &'static Creature)> {
     let all = NAMES.iter().flat_map(|&name| motions(name).into_iter().map(move |motion| (name, motion)));
     let all = all.filter(move |(name, motion)| wanted(name, motion));
     all.map(|(name, motion)| {
         let recipe = Recipe { motion: motion.into(), poses: 12, ..recipe(name, 2_500, false) };
-        (name, motion, make(&recipe).unwrap())
+        (name, motion, made(&recipe))
     })
 }
 

@@ -78,65 +78,85 @@ fn allowed(path: &Path) -> f64 {
     if ["-quantized", "-draco", "-meshopt"].iter().any(|end| name.contains(end)) { 1e-3 } else { 1e-4 }
 }
 
+/// What comparing a file came to.
+enum Outcome {
+    Agrees,
+    DoesNotMove,
+    /// Why there is nothing to compare it with.
+    Without(String),
+}
+
+/// Compares a file with what another program made of it or of the file that it is a variant of.
+fn compare(path: &Path, data: &Path) -> Outcome {
+    let short = path.strip_prefix(data).unwrap().display().to_string();
+    let files = with_neighbours(path);
+    let Ok(model) = Model::read(&files[0], &files, &mut Vec::new()) else { return Outcome::DoesNotMove };
+    if model.clips().is_empty() {
+        return Outcome::DoesNotMove;
+    }
+    let reference = data.join("reference/gltf").join(format!("{}.json", animal(path)));
+    let Ok(text) = std::fs::read(&reference) else {
+        return Outcome::Without(short);
+    };
+    let meta: serde_json::Value = serde_json::from_slice(&text).unwrap();
+    let own = with_neighbours(&data.join(meta["file"].as_str().unwrap()));
+    let clips = Model::read(&own[0], &own, &mut Vec::new()).unwrap().clips();
+    let lengths = |clips: &[Clip]| clips.iter().map(|c| (c.seconds * 1e3).round()).collect::<Vec<_>>();
+    if lengths(&model.clips()) != lengths(&clips) {
+        return Outcome::Without(format!("{short} (other clips than {})", meta["file"]));
+    }
+    let beside = |end: &str| reference.with_extension(end);
+    let their_faces: Vec<[u32; 3]> = std::fs::read(beside("faces.i32"))
+        .unwrap()
+        .chunks(12)
+        .map(|f| [0, 4, 8].map(|k| u32::from_le_bytes(f[k..k + 4].try_into().unwrap())))
+        .collect();
+    let points = |flat: &[f64]| flat.chunks(3).map(DVec3::from_slice).collect::<Vec<_>>();
+    let (mut ours, mut theirs) = (vec![model.rest()], vec![points(&floats(&beside("rest.f32")))]);
+    for (clip, entry) in meta["clips"].as_array().unwrap().iter().enumerate() {
+        let times: Vec<f64> = entry["times"].as_array().unwrap().iter().map(|t| t.as_f64().unwrap()).collect();
+        let poses = floats(&beside(&format!("clip{clip}.f32")));
+        theirs.extend(poses.chunks(poses.len() / times.len()).map(points));
+        ours.extend(times.iter().map(|&time| model.pose(clip, time)));
+    }
+    // Encoders leave out triangles of no area; what is left must be the same.
+    let whole = |faces: &[[u32; 3]], pose: &[DVec3]| -> Vec<[u32; 3]> {
+        let at = |v: u32| pose[v as usize];
+        let area = |[a, b, c]: [u32; 3]| (at(b) - at(a)).cross(at(c) - at(a)).length();
+        faces.iter().copied().filter(|&f| area(f) > 1e-9 * diagonal(pose, faces).powi(2)).collect()
+    };
+    let size = diagonal(&theirs[0], &their_faces);
+    let (a, b) = (paths(model.faces(), &ours), paths(&their_faces, &theirs));
+    let sound = [paths(&whole(model.faces(), &ours[0]), &ours), paths(&whole(&their_faces, &theirs[0]), &theirs)];
+    let mut worst: f64 = 0.0;
+    for (from, to) in [(&sound[0], &b), (&sound[1], &a)] {
+        worst = nearest(from, to).iter().map(|(_, far)| far / size).fold(worst, f64::max);
+    }
+    println!("{short}: {} faces, {} poses, off by at most {worst:.1e} of the diagonal", a.len(), ours.len());
+    assert!(worst < allowed(path), "{short} is off by {worst} of the diagonal");
+    Outcome::Agrees
+}
+
 #[test]
 fn every_animated_file_agrees_with_another_program() {
     let Some(data) = data() else { return };
     let mut documents = Vec::new();
     collect(&data.join("gltf"), &mut documents);
     documents.sort();
-    let (mut compared, mut without) = (0, Vec::new());
-    for path in documents {
-        let short = path.strip_prefix(&data).unwrap().display().to_string();
-        let files = with_neighbours(&path);
-        let Ok(model) = Model::read(&files[0], &files, &mut Vec::new()) else { continue };
-        if model.clips().is_empty() {
-            continue;
-        }
-        let reference = data.join("reference/gltf").join(format!("{}.json", animal(&path)));
-        let Ok(text) = std::fs::read(&reference) else {
-            without.push(short);
-            continue;
-        };
-        let meta: serde_json::Value = serde_json::from_slice(&text).unwrap();
-        let own = with_neighbours(&data.join(meta["file"].as_str().unwrap()));
-        let clips = Model::read(&own[0], &own, &mut Vec::new()).unwrap().clips();
-        let lengths = |clips: &[Clip]| clips.iter().map(|c| (c.seconds * 1e3).round()).collect::<Vec<_>>();
-        if lengths(&model.clips()) != lengths(&clips) {
-            without.push(format!("{short} (other clips than {})", meta["file"]));
-            continue;
-        }
-        let beside = |end: &str| reference.with_extension(end);
-        let their_faces: Vec<[u32; 3]> = std::fs::read(beside("faces.i32"))
-            .unwrap()
-            .chunks(12)
-            .map(|f| [0, 4, 8].map(|k| u32::from_le_bytes(f[k..k + 4].try_into().unwrap())))
-            .collect();
-        let points = |flat: &[f64]| flat.chunks(3).map(DVec3::from_slice).collect::<Vec<_>>();
-        let (mut ours, mut theirs) = (vec![model.rest()], vec![points(&floats(&beside("rest.f32")))]);
-        for (clip, entry) in meta["clips"].as_array().unwrap().iter().enumerate() {
-            let times: Vec<f64> = entry["times"].as_array().unwrap().iter().map(|t| t.as_f64().unwrap()).collect();
-            let poses = floats(&beside(&format!("clip{clip}.f32")));
-            theirs.extend(poses.chunks(poses.len() / times.len()).map(points));
-            ours.extend(times.iter().map(|&time| model.pose(clip, time)));
-        }
-        // Encoders leave out triangles of no area; what is left must be the same.
-        let whole = |faces: &[[u32; 3]], pose: &[DVec3]| -> Vec<[u32; 3]> {
-            let at = |v: u32| pose[v as usize];
-            let area = |[a, b, c]: [u32; 3]| (at(b) - at(a)).cross(at(c) - at(a)).length();
-            faces.iter().copied().filter(|&f| area(f) > 1e-9 * diagonal(pose, faces).powi(2)).collect()
-        };
-        let size = diagonal(&theirs[0], &their_faces);
-        let (a, b) = (paths(model.faces(), &ours), paths(&their_faces, &theirs));
-        let sound = [paths(&whole(model.faces(), &ours[0]), &ours), paths(&whole(&their_faces, &theirs[0]), &theirs)];
-        let mut worst: f64 = 0.0;
-        for (from, to) in [(&sound[0], &b), (&sound[1], &a)] {
-            worst = nearest(from, to).iter().map(|(_, far)| far / size).fold(worst, f64::max);
-        }
-        println!("{short}: {} faces, {} poses, off by at most {worst:.1e} of the diagonal", a.len(), ours.len());
-        assert!(worst < allowed(&path), "{short} is off by {worst} of the diagonal");
-        compared += 1;
-    }
-    println!("{compared} files compared; without a reference: {}", without.join(", "));
+    let (even, odd): (Vec<_>, Vec<_>) = documents.iter().enumerate().partition(|(i, _)| i % 2 == 0);
+    let all = |some: Vec<(usize, &PathBuf)>| some.into_iter().map(|(_, path)| compare(path, &data)).collect::<Vec<_>>();
+    let outcomes = std::thread::scope(|scope| {
+        let beside = scope.spawn(|| all(odd));
+        let mut outcomes = all(even);
+        outcomes.extend(beside.join().unwrap());
+        outcomes
+    });
+    let compared = outcomes.iter().filter(|outcome| matches!(outcome, Outcome::Agrees)).count();
+    let without = outcomes.iter().filter_map(|outcome| match outcome {
+        Outcome::Without(why) => Some(why.as_str()),
+        _ => None,
+    });
+    println!("{compared} files compared; without a reference: {}", without.collect::<Vec<_>>().join(", "));
     assert!(compared >= 30, "only {compared} files were compared");
 }
 

@@ -1,7 +1,7 @@
 //! `cargo xtask test`: everything that must hold, one step after the other, up to the first that fails.
 //!
 //! The order is by how soon a step can fail. What steps compile is shared as far as it goes: lints and documentation
-//! use the same metadata, the browser's wasm tests the same development profile as `build --dev`.
+//! use the same metadata, the browser's wasm tests the same dependencies as `build --dev`.
 
 use crate::server::Server;
 use crate::setup::{self, WASM};
@@ -152,6 +152,8 @@ fn test_wasm() -> Result<Tally> {
     shell::run(shell::cargo(["build", "--package", "wasm-test-runner"]))?;
     let mut cargo = shell::cargo(["test", "--no-fail-fast", "--target", WASM, "--no-default-features"]);
     cargo.args(["--features", "worker", "--test", "wasm_page", "--test", "wasm_worker"]);
+    // These cases are small: they run for less time than optimising them takes.
+    cargo.args(["--config", "profile.dev.package.sinew.opt-level=0"]);
     cargo.env("CHROMEDRIVER", setup::browser()?.driver).env("WASM_BINDGEN_TEST_TIMEOUT", "120");
     count(cargo)
 }
