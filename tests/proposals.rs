@@ -72,6 +72,12 @@ fn legs_are_not_taken_for_a_long_neck() {
     check(&zoo_case("giraffe", "cat"), &[(3, 4.0, 12.0)]);
 }
 
+/// Its tail is as long as a camel's neck.
+#[test]
+fn a_cat_is_not_taken_for_a_camel_walking_backwards() {
+    check(&zoo_case("camel", "cat"), &[(0, 4.0, 12.0)]);
+}
+
 #[test]
 fn bodies_and_animals() {
     let Some(data) = npz::data("proposals on bodies and animals") else { return };

@@ -2,8 +2,8 @@
 //!
 //! Both surfaces are thinned out to samples with all distances between them (`surface`). A spread of the source's
 //! samples and the points asked for look for their places together (`consensus`), from several starts (`starts`):
-//! the figures laid over each other as they stand, stretched to the same box, turned, or pulled to given pairs; the
-//! outcome in which points agree best with each other counts. Given pairs stay as they are and are listened to more.
+//! the figures laid over each other as they stand, stretched to the same box, turned, or pulled to given pairs and tips;
+//! the outcome in which points agree best with each other counts. Given pairs stay as they are and are listened to more.
 //! Where tips of both figures (`tips`) have come to lie next to each other, they are laid on each other, and the points
 //! agree once more: limbs of other lengths are then followed to their ends. The rest is for the surfaces (`refine`).
 //!

@@ -1,4 +1,4 @@
-//! Where to begin: the figures laid over each other in several ways.
+//! Where to begin: the figures laid over each other in several ways, also pulled to given pairs and to tips.
 
 use super::consensus::{Consensus, LAST, Rules};
 use super::similarity::Similarity;
@@ -12,14 +12,21 @@ const FACING: f64 = 0.02;
 /// How far a stretch to the target's box may go, either way, from its mean.
 const STRETCH: [f64; 2] = [0.6, 1.6];
 
-/// Within this distance of a given pair, what it says counts about the same.
+/// Within this distance of a pair, what it says counts about the same.
 const PULL: f64 = 0.2;
+
+/// What a squared distance between the places of tips costs, where one of distances along the surface costs one: so that
+/// either settles which tip is which. A cat's tail has the length of a camel's neck, but is not where that is.
+const TIPS_BY_PLACE: [f64; 2] = [0.2, 4.0];
 
 /// How much better another turn than none must end.
 const CLEARLY: f64 = 0.85;
 
 /// From so many given pairs on, they tell how the figures stand.
 const TELLING: usize = 2;
+
+/// A point of the source and its place on the target, after a weight.
+type Pair = (f64, DVec3, DVec3);
 
 /// A way in which the source may stand, to be laid over the target.
 #[derive(Clone, Copy, Debug)]
@@ -64,8 +71,7 @@ impl Start {
 /// The start that ends best for a crowd, among those of the stand that given pairs speak for. Where too few are given,
 /// the figures stand as they are, unless turned they end clearly better.
 pub(super) fn best(proposer: &Proposer, crowd: &Crowd) -> Start {
-    let given: Vec<(f64, DVec3, DVec3)> =
-        crowd.points.iter().filter_map(|p| Some((1.0, p.place, p.given.as_ref()?.place))).collect();
+    let given: Vec<Pair> = crowd.points.iter().filter_map(|p| Some((1.0, p.place, p.given.as_ref()?.place))).collect();
     let ends = |stand: &Stand| best_of(proposer, crowd, stand, &given);
     let Some((as_they_are, turned)) = proposer.stands.split_first() else { return Start::nowhere(crowd) };
     if given.len() >= TELLING {
@@ -78,51 +84,38 @@ pub(super) fn best(proposer: &Proposer, crowd: &Crowd) -> Start {
 }
 
 /// How far given pairs stay apart when the turned source is only shifted and made larger or smaller, in squares.
-fn misfit(stand: &Stand, given: &[(f64, DVec3, DVec3)]) -> f64 {
+fn misfit(stand: &Stand, given: &[Pair]) -> f64 {
     let motion = Similarity::fit(given.iter().map(|&(w, p, q)| (w, stand.turn * p, q)));
-    let off = |&(_, p, q): &(f64, DVec3, DVec3)| {
+    let off = |&(_, p, q): &Pair| {
         let (from, to) = (stand.turn * p - motion.from, q - motion.to);
         (motion.scale * from).distance_squared(to)
     };
     given.iter().map(off).sum()
 }
 
-/// By how much given pairs move what is near them once `map` has laid the source over the target: without it, the legs
+/// By how much pairs move what is near them once `map` has laid the source over the target: without it, the legs
 /// of a creature whose neck is much longer lie nearest to the other's neck.
 ///
 /// Inverse distance weighting (D. Shepard, *A two-dimensional interpolation function for irregularly-spaced data*,
 /// Proceedings of the 23rd ACM National Conference, 1968, pp. 517–524), softened.
-fn pull(given: &[(f64, DVec3, DVec3)], map: DMat3, place: DVec3) -> DVec3 {
+fn pull(pairs: &[Pair], map: DMat3, place: DVec3) -> DVec3 {
     let weight = |from: DVec3| (place.distance_squared(from) + PULL * PULL).powi(-2);
-    let total: f64 = given.iter().map(|&(_, from, _)| weight(from)).sum();
-    given.iter().map(|&(_, from, to)| weight(from) / total * (to - map * from)).sum()
+    let total: f64 = pairs.iter().map(|&(_, from, _)| weight(from)).sum();
+    pairs.iter().map(|&(_, from, to)| weight(from) / total * (to - map * from)).sum()
 }
 
 /// The start that ends best, of those that lay the figures over each other in one way.
-fn best_of(proposer: &Proposer, crowd: &Crowd, stand: &Stand, given: &[(f64, DVec3, DVec3)]) -> Start {
-    let mut starts: Vec<Vec<Option<u32>>> = Vec::new();
-    let lay = |map: &dyn Fn(DVec3) -> DVec3, turn: DMat3| laid(&proposer.target, crowd, map, turn);
-    for map in stand.maps {
-        starts.push(lay(&|p| map * p, map));
-    }
-    for map in stand.maps {
-        let mut at = vec![None; crowd.points.len()];
-        for (point, sample) in tips::assign(&proposer.source, &proposer.target, crowd, map) {
-            at[point as usize] = Some(sample);
-        }
-        starts.push(at);
-    }
-    if !given.is_empty() {
-        for map in stand.maps {
-            starts.push(lay(&|p| map * p + pull(given, map, p), map));
-        }
-    }
-    let schedules: [&[Rules]; 2] = [
+fn best_of(proposer: &Proposer, crowd: &Crowd, stand: &Stand, given: &[Pair]) -> Start {
+    let schedules: [&[Rules]; 3] = [
         &[rules(1.0, 0.75), rules(0.5, 0.75), rules(0.3, 0.75), rules(0.2, 0.75)],
         &[rules(1.0, 0.15), rules(1.0, 0.15), rules(0.5, 0.3), rules(0.3, 0.75), rules(0.2, 0.75)],
+        // What is far may be of another length: it would undo a good start.
+        &[rules(0.3, 0.75), rules(0.3, 0.75), rules(0.2, 0.75), rules(0.2, 0.75)],
     ];
+    // Where enough is given, the rest gains nothing.
+    let schedules = if given.len() < TELLING { &schedules } else { &schedules[..2] };
     let mut best: Option<Start> = None;
-    for start in &starts {
+    for start in starts(proposer, crowd, stand, given) {
         for schedule in schedules {
             let outcome = run(&proposer.target, crowd, start.clone(), schedule);
             if best.as_ref().is_none_or(|b| outcome.badness < b.badness) {
@@ -131,6 +124,32 @@ fn best_of(proposer: &Proposer, crowd: &Crowd, stand: &Stand, given: &[(f64, DVe
         }
     }
     best.unwrap_or_else(|| Start::nowhere(crowd))
+}
+
+/// Places (#points samples of the target) to begin with, in one way in which the source may stand.
+fn starts(proposer: &Proposer, crowd: &Crowd, stand: &Stand, given: &[Pair]) -> Vec<Vec<Option<u32>>> {
+    let mut starts = Vec::new();
+    let laid = |map: DMat3, pairs: &[Pair]| laid(&proposer.target, crowd, &|p| map * p + pull(pairs, map, p), map);
+    let by_place = if given.len() < TELLING { &TIPS_BY_PLACE[..] } else { &TIPS_BY_PLACE[..1] };
+    for map in stand.maps {
+        starts.push(laid(map, &[]));
+        if !given.is_empty() {
+            starts.push(laid(map, given));
+        }
+        for &by_place in by_place {
+            let tips = tips::assign(&proposer.source, &proposer.target, crowd, map, by_place);
+            let mut at = vec![None; crowd.points.len()];
+            tips.iter().for_each(|&(point, sample)| at[point as usize] = Some(sample));
+            starts.push(at);
+            if given.len() < TELLING {
+                let tip = |&(point, sample): &(u32, u32)| {
+                    (1.0, crowd.points[point as usize].place, proposer.target.places[sample as usize])
+                };
+                starts.push(laid(map, &given.iter().copied().chain(tips.iter().map(tip)).collect::<Vec<_>>()));
+            }
+        }
+    }
+    starts
 }
 
 fn rules(reach: f64, place: f64) -> Rules {

@@ -24,9 +24,6 @@ const BEAM: usize = 64;
 /// What it costs to leave a tip without a partner.
 const ALONE: f64 = 0.03;
 
-/// What a squared distance between places costs, where one of distances along the surface costs one.
-const PLACE: f64 = 0.2;
-
 /// Samples among the first `among` that are tips, in the order of the samples.
 pub fn tips(surface: &Surface, among: usize) -> Vec<u32> {
     let among = among.min(surface.len());
@@ -43,8 +40,9 @@ pub fn tips(surface: &Surface, among: usize) -> Vec<u32> {
 
 /// Assigns tips of the crowd's company (the first samples of `source`) to tips of the target.
 ///
-/// `map` lays the source over the target. Returns (member of the crowd, sample of the target).
-pub fn assign(source: &Surface, target: &Surface, crowd: &Crowd, map: DMat3) -> Vec<(u32, u32)> {
+/// `map` lays the source over the target; a squared distance between places costs `by_place`, where one of distances along
+/// the surface costs one. Returns (member of the crowd, sample of the target).
+pub fn assign(source: &Surface, target: &Surface, crowd: &Crowd, map: DMat3, by_place: f64) -> Vec<(u32, u32)> {
     let (own, others) = (tips(source, crowd.company), tips(target, crowd.company));
     let n = crowd.points.len();
     let row = |i: u32| &crowd.distances[i as usize * n..(i as usize + 1) * n];
@@ -63,7 +61,7 @@ pub fn assign(source: &Surface, target: &Surface, crowd: &Crowd, map: DMat3) -> 
                     before.chain(fixed.iter().copied()).map(|(s, to)| (row(tip)[s as usize], to[other as usize]));
                 let off = mean_square(pairs);
                 let apart = apart(crowd.points[tip as usize].place, target.places[other as usize], map);
-                next.push((cost + off + PLACE * apart, [partners.as_slice(), &[Some(other)]].concat()));
+                next.push((cost + off + by_place * apart, [partners.as_slice(), &[Some(other)]].concat()));
             }
         }
         next.sort_by(|a, b| a.0.total_cmp(&b.0));
