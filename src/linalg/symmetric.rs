@@ -8,19 +8,33 @@ pub struct Symmetric {
     starts: Vec<u32>,
     columns: Vec<u32>,
     values: Vec<f64>,
+    /// Where in each row the entries from the diagonal on begin.
+    diagonals: Vec<u32>,
 }
 
 impl Symmetric {
     /// From `starts`, n + 1 places in `columns` and `values` where each row starts, and their length; column numbers rise
     /// within a row.
     pub fn new(starts: Vec<u32>, columns: Vec<u32>, values: Vec<f64>) -> Self {
-        Self { starts, columns, values }
+        let left = |(row, range): (usize, &[u32])| {
+            let own = &columns[range[0] as usize..range[1] as usize];
+            range[0] + own.partition_point(|&column| (column as usize) < row) as u32
+        };
+        let diagonals = starts.windows(2).enumerate().map(left).collect();
+        Self { starts, columns, values, diagonals }
     }
 
     /// The entries of a row: column numbers, rising, and values.
     #[inline]
     pub fn row(&self, row: usize) -> impl Iterator<Item = (usize, f64)> {
         let range = self.starts[row] as usize..self.starts[row + 1] as usize;
+        self.columns[range.clone()].iter().map(|&c| c as usize).zip(self.values[range].iter().copied())
+    }
+
+    /// The entries of a row from the diagonal on.
+    #[inline]
+    pub fn row_from_diagonal(&self, row: usize) -> impl Iterator<Item = (usize, f64)> {
+        let range = self.diagonals[row] as usize..self.starts[row + 1] as usize;
         self.columns[range.clone()].iter().map(|&c| c as usize).zip(self.values[range].iter().copied())
     }
 

@@ -135,15 +135,21 @@ impl<'a> Problem<'a> {
     /// Guesses until a guess is right; false if that does not come about.
     fn guess(&mut self, column: &mut Column) -> bool {
         let (mut least, mut since) = (usize::MAX, 0);
+        self.to_bounds(column);
+        self.measure(&column.weights);
         for _ in 0..ROUNDS {
-            self.to_bounds(column);
-            self.measure(&column.weights);
             if !self.free_step(column) {
                 return false;
             }
-            let corrected = if self.is_right(column) { Vec::new() } else { self.correct(column, self.members) };
+            if self.is_right(column) {
+                self.refine(column);
+                if self.is_right(column) {
+                    return true;
+                }
+            }
+            let corrected = self.correct(column, self.members);
             match corrected.len() {
-                0 => return self.refine(column),
+                0 => return true,
                 corrections if corrections < least => (least, since) = (corrections, 0),
                 _ if since < PATIENCE => since += 1,
                 _ => return false,
@@ -174,13 +180,35 @@ impl<'a> Problem<'a> {
         self.members.iter().filter(|v| column.states[**v as usize] == State::Free).copied().collect()
     }
 
-    /// One Newton step of the free weights, and forces after it.
+    /// One Newton step of the free weights: no force is left on them. The others' follow.
     fn free_step(&mut self, column: &mut Column) -> bool {
+        if !self.newton(column) {
+            return false;
+        }
+        self.largest = 0.0;
+        for &v in self.members {
+            let v = v as usize;
+            self.forces[v] = match column.states[v] {
+                State::Free => 0.0,
+                _ => self.quadratic.matrix.times(v, &column.weights),
+            };
+            self.largest = self.largest.max(self.forces[v].abs());
+        }
+        true
+    }
+
+    /// The step alone; forces are those before it.
+    fn newton(&mut self, column: &mut Column) -> bool {
         let free = self.free(column);
         let Some(step) = self.solver.step(&free, &self.forces) else { return false };
         free.iter().zip(&step).for_each(|(&v, &d)| column.weights[v as usize] += d);
-        self.measure(&column.weights);
         true
+    }
+
+    /// Moves a weight, and the forces around it with it.
+    pub(super) fn shift(&mut self, column: &mut Column, v: u32, by: f64) {
+        column.weights[v as usize] += by;
+        self.quadratic.matrix.row(v as usize).for_each(|(u, value)| self.forces[u] += value * by);
     }
 
     /// Whether bounds hold, within rounding, what they should.
@@ -227,20 +255,22 @@ impl<'a> Problem<'a> {
         self.members.iter().map(|&v| self.forces[v as usize].abs()).fold(0.0, f64::max)
     }
 
-    /// Steps again while that makes the forces on free weights smaller, with the right guess.
-    fn refine(&mut self, column: &mut Column) -> bool {
+    /// Measures the forces exactly, and steps again while that makes those on free weights smaller.
+    fn refine(&mut self, column: &mut Column) {
+        self.measure(&column.weights);
         for _ in 0..REFINEMENTS {
             let before = self.largest_free_force(column);
-            if before <= 0.1 * self.no_force * self.largest_force() {
-                return true;
+            if before <= 0.1 * self.no_force * self.largest {
+                return;
             }
             let weights = column.weights.clone();
-            if !self.free_step(column) || self.largest_free_force(column) > 0.5 * before {
+            let stepped = self.newton(column);
+            self.measure(&column.weights);
+            if !stepped || self.largest_free_force(column) > 0.5 * before {
                 column.weights = weights;
-                return true;
+                return self.measure(&column.weights);
             }
         }
-        true
     }
 
     fn largest_free_force(&self, column: &Column) -> f64 {

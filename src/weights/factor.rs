@@ -21,10 +21,21 @@ impl<'a> Solver<'a> {
     /// of `free`. `None` where Q is not positive definite there within rounding.
     pub fn step(&mut self, free: &[u32], forces: &[f64]) -> Option<Vec<f64>> {
         let mut factor = self.factor.take().unwrap_or_default();
+        let step = self.step_of(&mut factor, free, forces);
+        self.factor = step.is_some().then_some(factor);
+        step
+    }
+
+    /// The same with another factor, which is changed to this set.
+    pub fn step_of(&mut self, factor: &mut Principal, free: &[u32], forces: &[f64]) -> Option<Vec<f64>> {
         factor.change(&self.quadratic.matrix, &self.quadratic.tree, free, &mut self.room).ok()?;
         let mut step: Vec<f64> = free.iter().map(|&v| -forces[v as usize]).collect();
         factor.solve(&mut step, &mut self.room);
-        self.factor = Some(factor);
         step.iter().all(|x| x.is_finite()).then_some(step)
+    }
+
+    /// A factor that is no longer needed: its memory serves the next ones.
+    pub fn give_back(&mut self, factor: Principal) {
+        factor.empty(&mut self.room);
     }
 }

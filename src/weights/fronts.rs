@@ -5,7 +5,7 @@
 //! there is left to correct; then the whole is solved again.
 
 use super::box_problem::{Column, Problem, State};
-use super::factor::Solver;
+use crate::linalg::principal::Principal;
 
 /// Rounds in neighbourhoods between two on the whole.
 const ROUNDS: usize = 6;
@@ -22,36 +22,35 @@ const TIED: usize = 2;
 
 /// Corrects states near `corrected` vertices further.
 pub fn follow(problem: &mut Problem, column: &mut Column, mut corrected: Vec<u32>) {
-    let mut solver = Solver::new(problem.quadratic, None);
+    let mut factor = Principal::default();
     let few = LEFT * corrected.len() as f64;
     for _ in 0..ROUNDS {
-        for &v in &corrected {
-            match column.states[v as usize] {
-                State::Low => column.weights[v as usize] = 0.0,
-                State::High => column.weights[v as usize] = 1.0,
-                State::Free | State::Fixed => {}
-            }
-        }
-        let (felt, within) = around(problem, corrected);
+        to_bounds(problem, column, &corrected);
+        let (felt, within) = around(problem, corrected.clone());
         let is_free = |v: &&u32| column.states[**v as usize] == State::Free;
         let mut free: Vec<u32> = felt[..within].iter().filter(is_free).copied().collect();
         free.sort_unstable();
-        measure(problem, column, &free);
-        let Some(step) = solver.step(&free, &problem.forces) else { return };
-        free.iter().zip(&step).for_each(|(&v, &d)| column.weights[v as usize] += d);
-        let held: Vec<u32> = felt.iter().filter(|v| column.states[**v as usize] != State::Free).copied().collect();
-        measure(problem, column, &held);
+        let Some(step) = problem.solver.step_of(&mut factor, &free, &problem.forces) else { break };
+        free.iter().zip(&step).for_each(|(&v, &d)| problem.shift(column, v, d));
         corrected = problem.correct(column, &felt);
         if corrected.len() as f64 <= few {
-            return;
+            break;
         }
     }
+    to_bounds(problem, column, &corrected);
+    problem.solver.give_back(factor);
 }
 
-/// Forces at some vertices.
-fn measure(problem: &mut Problem, column: &Column, vertices: &[u32]) {
+/// Puts weights that are held where they are held.
+fn to_bounds(problem: &mut Problem, column: &mut Column, vertices: &[u32]) {
     for &v in vertices {
-        problem.forces[v as usize] = problem.quadratic.matrix.times(v as usize, &column.weights);
+        let bound = match column.states[v as usize] {
+            State::Low => 0.0,
+            State::High => 1.0,
+            State::Free | State::Fixed => continue,
+        };
+        problem.shift(column, v, bound - column.weights[v as usize]);
+        column.weights[v as usize] = bound;
     }
 }
 

@@ -185,7 +185,7 @@ impl WithSimd for Elimination<'_> {
             let end = pivots.min(first + BLOCK);
             let (done, later) = front.panel.split_at_mut(end * rows);
             let block = &mut done[first * rows..];
-            if !eliminate_block(block, rows, first) {
+            if !eliminate_block(simd, block, rows, first) {
                 return false;
             }
             for (columns, first) in later.chunks_mut(TILE * rows).zip((end..).step_by(TILE)) {
@@ -204,30 +204,66 @@ impl WithSimd for Elimination<'_> {
     }
 }
 
-/// Eliminates a block of columns whose first pivot is in row `first`.
+/// Eliminates a block of at most [`BLOCK`] columns whose first pivot is in row `first`.
 #[inline(always)]
-fn eliminate_block(block: &mut [f64], rows: usize, first: usize) -> bool {
-    for j in 0..block.len() / rows {
-        let (done, later) = block.split_at_mut((j + 1) * rows);
-        let column = &mut done[j * rows..];
-        let row = first + j;
-        let pivot = column[row];
+fn eliminate_block<S: Simd>(simd: S, block: &mut [f64], rows: usize, first: usize) -> bool {
+    match block.len() / rows {
+        1 => eliminate_columns::<S, 1>(simd, block, rows, first),
+        2 => eliminate_columns::<S, 2>(simd, block, rows, first),
+        3 => eliminate_columns::<S, 3>(simd, block, rows, first),
+        4 => eliminate_columns::<S, 4>(simd, block, rows, first),
+        5 => eliminate_columns::<S, 5>(simd, block, rows, first),
+        6 => eliminate_columns::<S, 6>(simd, block, rows, first),
+        7 => eliminate_columns::<S, 7>(simd, block, rows, first),
+        _ => eliminate_columns::<S, BLOCK>(simd, block, rows, first),
+    }
+}
+
+/// Factors the pivots' own rows, and divides those beneath by that factor, some rows side by side.
+#[inline(always)]
+fn eliminate_columns<S: Simd, const N: usize>(simd: S, block: &mut [f64], rows: usize, first: usize) -> bool {
+    let mut chunks = block.chunks_exact_mut(rows);
+    let columns: [&mut [f64]; N] = std::array::from_fn(|_| chunks.next().unwrap_or_default());
+    let Some(factor) = triangle::<N>(std::array::from_fn(|j| std::array::from_fn(|i| columns[j][first + i]))) else {
+        return false;
+    };
+    for j in 0..N {
+        columns[j][first..first + N].copy_from_slice(&factor[j]);
+    }
+    let mut row = first + N;
+    while row < rows {
+        let end = rows.min(row + S::F64_LANES);
+        let mut values: [S::f64s; N] = std::array::from_fn(|j| simd.partial_load_f64s(&columns[j][row..end]));
+        for j in 0..N {
+            values[j] = simd.mul_f64s(values[j], simd.splat_f64s(1.0 / factor[j][j]));
+            for k in j + 1..N {
+                let share = simd.splat_f64s(-factor[j][k]);
+                values[k] = simd.mul_add_e_f64s(values[j], share, values[k]);
+            }
+            simd.partial_store_f64s(&mut columns[j][row..end], values[j]);
+        }
+        row = end;
+    }
+    true
+}
+
+/// The Cholesky factor of a small matrix by columns, lower triangles both; none where a pivot is not positive.
+#[inline(always)]
+fn triangle<const N: usize>(mut columns: [[f64; N]; N]) -> Option<[[f64; N]; N]> {
+    for j in 0..N {
+        let pivot = columns[j][j];
         if pivot.is_nan() || pivot <= 0.0 || pivot.is_infinite() {
-            return false;
+            return None;
         }
         let scale = 1.0 / pivot.sqrt();
-        for x in &mut column[row..] {
-            *x *= scale;
-        }
-        for (k, other) in later.chunks_exact_mut(rows).enumerate() {
-            let row = row + 1 + k;
-            let share = column[row];
-            for (x, l) in other[row..].iter_mut().zip(&column[row..]) {
-                *x -= l * share;
+        columns[j][j..].iter_mut().for_each(|x| *x *= scale);
+        for k in j + 1..N {
+            for i in k..N {
+                columns[k][i] -= columns[j][i] * columns[j][k];
             }
         }
     }
-    true
+    Some(columns)
 }
 
 /// Columns of the factor.
@@ -263,12 +299,27 @@ fn subtract<S: Simd>(simd: S, source: Source, from: usize, target: Target) {
         }
         row += S::F64_LANES;
     }
-    for row in row..count {
-        for (j, to) in columns.chunks_exact_mut(rows).enumerate() {
-            let products = source.values.chunks_exact(source.rows).map(|values| values[from + row] * values[from + j]);
-            to[first + row] -= products.sum::<f64>();
+    if row < count {
+        let sums = rest_products(simd, source, from + row..from + count, from);
+        for (to, sum) in columns.chunks_exact_mut(rows).zip(sums) {
+            let to = &mut to[first + row..];
+            simd.partial_store_f64s(to, simd.sub_f64s(simd.partial_load_f64s(to), sum));
         }
     }
+}
+
+/// The same as [`products`] for fewer rows than there are in a vector.
+#[inline(always)]
+fn rest_products<S: Simd>(simd: S, source: Source, rows: Range<usize>, from: usize) -> [S::f64s; TILE] {
+    let mut sums = [simd.splat_f64s(0.0); TILE];
+    for values in source.values.chunks_exact(source.rows) {
+        let a = simd.partial_load_f64s(&values[rows.clone()]);
+        let b = &values[from..from + TILE];
+        for j in 0..TILE {
+            sums[j] = simd.mul_add_e_f64s(a, simd.splat_f64s(b[j]), sums[j]);
+        }
+    }
+    sums
 }
 
 /// Subtracts vectors from the beginning of a column.

@@ -30,7 +30,7 @@ pub struct Principal {
 }
 
 /// A node's share of the factor.
-#[derive(Debug)]
+#[derive(Debug, Default)]
 struct Part {
     /// The node's columns in the set, ascending.
     columns: Vec<u32>,
@@ -49,13 +49,21 @@ pub struct Room {
     /// #nodes: whether each is to be done again.
     stale: Vec<bool>,
     x: Vec<f64>,
+    /// Parts that are no longer needed.
+    spare: Vec<Part>,
 }
 
 impl Room {
     /// Room for a matrix with a tree.
     pub fn new(matrix: &Symmetric, tree: &Tree) -> Self {
         let n = matrix.size();
-        Self { inside: vec![false; n], place: vec![NONE; n], stale: vec![false; tree.size()], x: vec![0.0; n] }
+        Self {
+            inside: vec![false; n],
+            place: vec![NONE; n],
+            stale: vec![false; tree.size()],
+            x: vec![0.0; n],
+            spare: Vec::new(),
+        }
     }
 }
 
@@ -103,33 +111,37 @@ impl Principal {
 
     /// Does a node again; false where that cannot be.
     fn eliminate(&mut self, matrix: &Symmetric, tree: &Tree, node: u32, room: &mut Room) -> bool {
-        let columns: Vec<u32> = tree.columns(node).filter(|v| room.inside[*v as usize]).collect();
+        let mut part =
+            self.parts[node as usize].take().and_then(Arc::into_inner).or_else(|| room.spare.pop()).unwrap_or_default();
+        let Part { columns, rows, front } = &mut part;
+        columns.clear();
+        columns.extend(tree.columns(node).filter(|v| room.inside[*v as usize]));
         let below = tree.children(node).iter().any(|&child| self.alive[child as usize]);
         self.alive[node as usize] = below || !columns.is_empty();
-        let before = self.parts[node as usize].take().and_then(|part| Arc::try_unwrap(part).ok());
         if columns.is_empty() {
+            room.spare.push(part);
             return true;
         }
-        let rows: Vec<u32> = tree.rows(node).iter().filter(|v| room.inside[**v as usize]).copied().collect();
-        let mut front = before.map(|part| part.front).unwrap_or_default();
+        rows.clear();
+        rows.extend(tree.rows(node).iter().filter(|v| room.inside[**v as usize]));
         front.reset(columns.len(), rows.len());
         let top = padded(columns.len()) as u32;
-        let places = (0..).zip(&columns).chain((top..).zip(&rows));
+        let places = (0..).zip(&*columns).chain((top..).zip(&*rows));
         places.for_each(|(place, &v)| room.place[v as usize] = place);
         let height = front.rows();
-        for (column, &v) in front.panel.chunks_exact_mut(height).zip(&columns) {
-            for (u, value) in matrix.row(v as usize).skip_while(|entry| entry.0 < v as usize) {
+        for (column, &v) in front.panel.chunks_exact_mut(height).zip(&*columns) {
+            for (u, value) in matrix.row_from_diagonal(v as usize) {
                 if let Some(entry) = column.get_mut(room.place[u] as usize) {
                     *entry += value;
                 }
             }
         }
         if below {
-            self.add_children(tree, node, &mut front, &room.place);
+            self.add_children(tree, node, front, &room.place);
         }
-        columns.iter().chain(&rows).for_each(|&v| room.place[v as usize] = NONE);
+        columns.iter().chain(&*rows).for_each(|&v| room.place[v as usize] = NONE);
         let done = front.eliminate();
-        self.parts[node as usize] = Some(Arc::new(Part { columns, rows, front }));
+        self.parts[node as usize] = Some(Arc::new(part));
         done
     }
 
@@ -144,6 +156,11 @@ impl Principal {
                 }
             }
         }
+    }
+
+    /// Leaves its memory to the next factors that are computed with this room.
+    pub fn empty(self, room: &mut Room) {
+        room.spare.extend(self.parts.into_iter().flatten().filter_map(Arc::into_inner));
     }
 
     /// Replaces right-hand sides by solutions at the unknowns of the set, `x` being one number for each of them.

@@ -11,7 +11,7 @@ use std::ops::Range;
 pub const NONE: u32 = u32::MAX;
 
 /// Nodes are merged up to so many columns if no more than such a share of their entries are zeros.
-const MERGED: [(usize, f64); 4] = [(8, 1.0), (24, 0.6), (48, 0.2), (usize::MAX, 0.08)];
+const MERGED: [(usize, f64); 4] = [(16, 1.0), (32, 0.7), (64, 0.4), (usize::MAX, 0.12)];
 
 /// The tree of a symmetric matrix whose unknowns are eliminated in the order of their numbers. Nodes are runs of columns;
 /// children come before their parents.
