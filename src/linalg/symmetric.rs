@@ -1,6 +1,7 @@
 //! Symmetric sparse matrices.
 
 use super::cholesky::Upper;
+use std::ops::Range;
 
 /// A symmetric sparse matrix, both triangles, by rows.
 #[derive(Debug)]
@@ -27,14 +28,18 @@ impl Symmetric {
     /// The entries of a row: column numbers, rising, and values.
     #[inline]
     pub fn row(&self, row: usize) -> impl Iterator<Item = (usize, f64)> {
-        let range = self.starts[row] as usize..self.starts[row + 1] as usize;
-        self.columns[range.clone()].iter().map(|&c| c as usize).zip(self.values[range].iter().copied())
+        self.entries(self.starts[row]..self.starts[row + 1])
     }
 
     /// The entries of a row from the diagonal on.
     #[inline]
     pub fn row_from_diagonal(&self, row: usize) -> impl Iterator<Item = (usize, f64)> {
-        let range = self.diagonals[row] as usize..self.starts[row + 1] as usize;
+        self.entries(self.diagonals[row]..self.starts[row + 1])
+    }
+
+    #[inline]
+    fn entries(&self, range: Range<u32>) -> impl Iterator<Item = (usize, f64)> {
+        let range = range.start as usize..range.end as usize;
         self.columns[range.clone()].iter().map(|&c| c as usize).zip(self.values[range].iter().copied())
     }
 

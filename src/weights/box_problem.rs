@@ -62,6 +62,17 @@ pub enum State {
     Fixed,
 }
 
+impl State {
+    /// The bound at which a weight is held, if it is.
+    pub fn bound(self) -> Option<f64> {
+        match self {
+            Self::Low => Some(0.0),
+            Self::High => Some(1.0),
+            Self::Free | Self::Fixed => None,
+        }
+    }
+}
+
 /// One handle's weights, before rows are divided by their sums.
 #[derive(Clone, Debug, Default)]
 pub struct Column {
@@ -149,6 +160,7 @@ impl<'a> Problem<'a> {
             }
             let corrected = self.correct(column, self.members);
             match corrected.len() {
+                // Nothing that could be corrected.
                 0 => return true,
                 corrections if corrections < least => (least, since) = (corrections, 0),
                 _ if since < PATIENCE => since += 1,
@@ -161,10 +173,8 @@ impl<'a> Problem<'a> {
 
     fn to_bounds(&self, column: &mut Column) {
         for &v in self.members {
-            match column.states[v as usize] {
-                State::Low => column.weights[v as usize] = 0.0,
-                State::High => column.weights[v as usize] = 1.0,
-                State::Free | State::Fixed => {}
+            if let Some(bound) = column.states[v as usize].bound() {
+                column.weights[v as usize] = bound;
             }
         }
     }
@@ -185,15 +195,13 @@ impl<'a> Problem<'a> {
         if !self.newton(column) {
             return false;
         }
-        self.largest = 0.0;
         for &v in self.members {
-            let v = v as usize;
-            self.forces[v] = match column.states[v] {
+            self.forces[v as usize] = match column.states[v as usize] {
                 State::Free => 0.0,
-                _ => self.quadratic.matrix.times(v, &column.weights),
+                _ => self.quadratic.matrix.times(v as usize, &column.weights),
             };
-            self.largest = self.largest.max(self.forces[v].abs());
         }
+        self.largest = self.largest_force();
         true
     }
 

@@ -26,7 +26,7 @@ pub fn follow(problem: &mut Problem, column: &mut Column, mut corrected: Vec<u32
     let few = LEFT * corrected.len() as f64;
     for _ in 0..ROUNDS {
         to_bounds(problem, column, &corrected);
-        let (felt, within) = around(problem, corrected.clone());
+        let (felt, within) = around(problem, &corrected);
         let is_free = |v: &&u32| column.states[**v as usize] == State::Free;
         let mut free: Vec<u32> = felt[..within].iter().filter(is_free).copied().collect();
         free.sort_unstable();
@@ -44,18 +44,17 @@ pub fn follow(problem: &mut Problem, column: &mut Column, mut corrected: Vec<u32
 /// Puts weights that are held where they are held.
 fn to_bounds(problem: &mut Problem, column: &mut Column, vertices: &[u32]) {
     for &v in vertices {
-        let bound = match column.states[v as usize] {
-            State::Low => 0.0,
-            State::High => 1.0,
-            State::Free | State::Fixed => continue,
-        };
-        problem.shift(column, v, bound - column.weights[v as usize]);
-        column.weights[v as usize] = bound;
+        if let Some(bound) = column.states[v as usize].bound() {
+            problem.shift(column, v, bound - column.weights[v as usize]);
+            // To the bit.
+            column.weights[v as usize] = bound;
+        }
     }
 }
 
 /// Everything within [`REACH`] of a set, and then what else is [`TIED`] to that; and how many the former are.
-fn around(problem: &mut Problem, mut set: Vec<u32>) -> (Vec<u32>, usize) {
+fn around(problem: &mut Problem, vertices: &[u32]) -> (Vec<u32>, usize) {
+    let mut set = vertices.to_vec();
     set.iter().for_each(|&v| problem.marks[v as usize] = true);
     // Where the outermost ring begins, and the end of every ring.
     let (mut from, mut ends) = (0, Vec::new());

@@ -227,24 +227,30 @@ fn eliminate_columns<S: Simd, const N: usize>(simd: S, block: &mut [f64], rows: 
     let Some(factor) = triangle::<N>(std::array::from_fn(|j| std::array::from_fn(|i| columns[j][first + i]))) else {
         return false;
     };
-    for j in 0..N {
-        columns[j][first..first + N].copy_from_slice(&factor[j]);
+    let mut parts = columns.map(|column| column[first..].split_at_mut(N));
+    parts.iter_mut().zip(&factor).for_each(|((own, _), values)| own.copy_from_slice(values));
+    let mut beneath = parts.map(|(_, beneath)| S::as_mut_simd_f64s(beneath));
+    for i in 0..beneath[0].0.len() {
+        let values = divided(simd, std::array::from_fn(|j| beneath[j].0[i]), &factor);
+        (0..N).for_each(|j| beneath[j].0[i] = values[j]);
     }
-    let mut row = first + N;
-    while row < rows {
-        let end = rows.min(row + S::F64_LANES);
-        let mut values: [S::f64s; N] = std::array::from_fn(|j| simd.partial_load_f64s(&columns[j][row..end]));
-        for j in 0..N {
-            values[j] = simd.mul_f64s(values[j], simd.splat_f64s(1.0 / factor[j][j]));
-            for k in j + 1..N {
-                let share = simd.splat_f64s(-factor[j][k]);
-                values[k] = simd.mul_add_e_f64s(values[j], share, values[k]);
-            }
-            simd.partial_store_f64s(&mut columns[j][row..end], values[j]);
-        }
-        row = end;
+    if !beneath[0].1.is_empty() {
+        let values = divided(simd, std::array::from_fn(|j| simd.partial_load_f64s(beneath[j].1)), &factor);
+        (0..N).for_each(|j| simd.partial_store_f64s(beneath[j].1, values[j]));
     }
     true
+}
+
+/// Some rows of columns beneath their pivots, divided by the pivots' factor.
+#[inline(always)]
+fn divided<S: Simd, const N: usize>(simd: S, mut values: [S::f64s; N], factor: &[[f64; N]; N]) -> [S::f64s; N] {
+    for j in 0..N {
+        values[j] = simd.mul_f64s(values[j], simd.splat_f64s(1.0 / factor[j][j]));
+        for k in j + 1..N {
+            values[k] = simd.mul_add_e_f64s(values[j], simd.splat_f64s(-factor[j][k]), values[k]);
+        }
+    }
+    values
 }
 
 /// The Cholesky factor of a small matrix by columns, lower triangles both; none where a pivot is not positive.
