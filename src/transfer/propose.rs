@@ -1,9 +1,10 @@
 //! Where the key points of one mesh lie on another, without being told, or told of some of them.
 //!
 //! Both surfaces are thinned out to samples with all distances between them (`surface`). A spread of the source's
-//! samples and the points asked for look for their places together (`consensus`), from several starts (`starts`):
-//! the figures laid over each other as they stand, stretched to the same box, turned, or pulled to given pairs and tips;
-//! the outcome in which points agree best with each other counts. Given pairs stay as they are and are listened to more.
+//! samples and the points asked for (`crowd`) look for their places together (`consensus`), from several starts (`starts`):
+//! the figures laid over each other as they stand, turned (`ways`), or pulled to given pairs and tips, and from the other
+//! side; the outcome in which points agree best with each other counts (`stands`). Given pairs stay as they are and are
+//! listened to more.
 //! Where tips of both figures (`tips`) have come to lie next to each other, they are laid on each other, and the points
 //! agree once more: limbs of other lengths are then followed to their ends. The rest is for the surfaces (`refine`).
 //!
@@ -12,36 +13,26 @@
 //! Machine Intelligence 25(2), 2003, pp. 187–199), here relaxed by rounds of averages.
 
 mod consensus;
+mod crowd;
 mod paths;
 mod refine;
 mod similarity;
+mod stands;
 mod starts;
 mod surface;
 mod tips;
+mod ways;
 
-use consensus::{Consensus, LAST, Point, Rules, Target};
+use consensus::{Consensus, LAST};
+use crowd::{COMPANY, Figures};
 use glam::DVec3;
 use refine::{Found, Refiner};
 use serde::Serialize;
+use stands::Stand;
 use surface::{SAMPLES, Surface};
 
-/// Samples of the source that look for their places beside the points asked for: in the first rounds, and in the last.
-const COMPANY: [usize; 2] = [60, 120];
-
-/// Samples of the target that are considered in the first rounds.
-const CONSIDERED: usize = 400;
-
-/// How far points listen in the rounds that find the places.
-const REACHES: [f64; 7] = [0.2, 0.15, 0.12, 0.1, 0.1, 0.1, 0.1];
-
-/// And in those after tips that have met are held.
+/// How far points listen in the rounds after tips that have met are held.
 const REACHES_WITH_TIPS: [f64; 4] = [0.1; 4];
-
-/// How much is listened to a point asked for, where a sample counts one: users' points may lie close together.
-const ASKED: f64 = 0.3;
-
-/// And to one whose place is known.
-const GIVEN: f64 = 3.0;
 
 /// Opinions that are not farther apart than this are both half right.
 const ALIKE: f64 = 0.04;
@@ -99,8 +90,8 @@ pub enum ProposeError {
 pub struct Proposer {
     source: Surface,
     target: Surface,
-    /// How the figures may lie over each other as far as shapes alone tell: first as they are.
-    stands: Vec<starts::Stand>,
+    /// How the figures may lie over each other, the likeliest first, and where the company comes to lie.
+    stands: Vec<Stand>,
     refiner: Option<Refiner>,
 }
 
@@ -119,30 +110,25 @@ impl Proposer {
         let target = Surface::new(target_faces, target_positions, SAMPLES).ok_or(ProposeError::Empty("target"))?;
         let refiner = Refiner::new(&source, &target);
         let mut proposer = Self { source, target, stands: Vec::new(), refiner };
-        proposer.stands = starts::stands(&proposer);
+        proposer.stands = stands::stands(proposer.figures());
         Ok(proposer)
     }
 
     /// Proposes a target vertex for every point (source vertices) whose place is not `known`.
     pub fn propose(&self, points: &[u32], known: &[Option<u32>]) -> Result<Proposals, ProposeError> {
         self.check(points, known)?;
-        let crowd = self.crowd(COMPANY[0], points, known);
-        let start = starts::best(self, &crowd);
-        let mut crowd = self.crowd(COMPANY[1], points, known);
-        let at = start.spread(crowd.points.len(), COMPANY, points.len());
-        let at = self.agree(&crowd, at, &REACHES).at;
+        let figures = self.figures();
+        let mut crowd = figures.crowd(COMPANY[1], points, known);
+        let at = stands::best(figures, &self.stands, &crowd);
         for (tip, other) in tips::met(&self.source, &self.target, crowd.company, &at) {
-            let place = || self.place(self.target.samples[other as usize]);
+            let place = || figures.place(self.target.samples[other as usize]);
             crowd.points[tip as usize].given.get_or_insert_with(place);
         }
-        Ok(self.read(&self.agree(&crowd, at, &REACHES_WITH_TIPS), points, known))
+        Ok(self.read(&figures.agree(&crowd, at, &REACHES_WITH_TIPS), points, known))
     }
 
-    /// The rounds in which a crowd moves from the places `at`, one for each reach.
-    fn agree<'a>(&'a self, crowd: &'a Crowd, at: Vec<Option<u32>>, reaches: &[f64]) -> Consensus<'a> {
-        let mut consensus = Consensus::new(&self.target, self.target.len(), &crowd.points, &crowd.distances, at);
-        reaches.iter().for_each(|&reach| consensus.round(&Rules { reach, ..LAST }));
-        consensus
+    fn figures(&self) -> Figures<'_> {
+        Figures { source: &self.source, target: &self.target }
     }
 
     fn check(&self, points: &[u32], known: &[Option<u32>]) -> Result<(), ProposeError> {
@@ -160,44 +146,6 @@ impl Proposer {
             }
         }
         Ok(())
-    }
-
-    /// The first `company` samples of the source and then the points asked for.
-    fn crowd(&self, company: usize, points: &[u32], known: &[Option<u32>]) -> Crowd {
-        let company = company.min(self.source.len());
-        let vertices: Vec<u32> = self.source.samples[..company].iter().chain(points).copied().collect();
-        let source = &self.source;
-        let rows: Vec<Vec<f32>> =
-            vertices.iter().map(|&v| source.distances_from(&source.readings[v as usize])).collect();
-        let mut distances = Vec::with_capacity(vertices.len() * vertices.len());
-        for row in &rows {
-            let far = |&v: &u32| source.readings[v as usize].iter().map(|&(s, w)| w * row[s as usize]).sum::<f32>();
-            distances.extend(vertices.iter().map(far));
-        }
-        let given = |k: &Option<u32>| k.map(|v| self.place(v));
-        let givens = (0..company).map(|_| None).chain(known.iter().map(given));
-        let points = vertices.iter().zip(givens).enumerate().map(|(i, (&v, given))| Point {
-            place: source.points[v as usize],
-            normal: source.vertex_normals[v as usize],
-            remote: source.readings[v as usize].iter().map(|&(s, w)| w * source.remote[s as usize]).sum(),
-            weight: match given {
-                Some(_) => GIVEN,
-                None if i < company => 1.0,
-                None => ASKED,
-            },
-            given,
-        });
-        Crowd { points: points.collect(), distances, company }
-    }
-
-    /// A vertex of the target as a place.
-    fn place(&self, vertex: u32) -> Target {
-        let reading = &self.target.readings[vertex as usize];
-        Target {
-            place: self.target.points[vertex as usize],
-            distances: self.target.distances_from(reading),
-            sample: self.target.cell[vertex as usize],
-        }
     }
 
     fn read(&self, consensus: &Consensus, points: &[u32], known: &[Option<u32>]) -> Proposals {
@@ -232,14 +180,4 @@ impl Proposer {
         let share = 0.5 + 0.5 * ((apart - ALIKE) / ALIKE).clamp(0.0, 1.0);
         self.target.between(agreed, settled, share)
     }
-}
-
-/// Points of the source that look for their places together.
-struct Crowd {
-    /// The company first, then the points asked for.
-    pub points: Vec<Point>,
-    /// Distances between all of them, row by row.
-    pub distances: Vec<f32>,
-    /// How many are company.
-    pub company: usize,
 }

@@ -5,7 +5,7 @@
 //! the places decide. That gives places to begin with ([`assign`]). In the end, the tips that have come to lie nearest to
 //! each other are partners ([`met`]).
 
-use super::Crowd;
+use super::crowd::Crowd;
 use super::surface::Surface;
 use glam::{DMat3, DVec3};
 

@@ -1,0 +1,175 @@
+//! Which way round the figures lie, and where the source's points come to lie then.
+//!
+//! That is decided where the rounds end, not by a look at where they begin: a cat's tail has the length of a camel's neck.
+//! One more start is where the rounds end the other way round, the target's points looking for places on the source: that
+//! often finds what no start from this side finds.
+
+use super::consensus::{Consensus, LAST, Rules};
+use super::crowd::{COMPANY, Crowd, Figures};
+use super::similarity::Similarity;
+use super::starts::{Pair, Places, TELLING, laid, starts};
+use super::surface::Surface;
+use super::ways::{Way, half_turns, turns};
+use glam::DMat3;
+
+/// Samples of the target that are considered in the first rounds.
+pub const CONSIDERED: usize = 400;
+
+/// How far points listen in the rounds that find the places.
+const REACHES: [f64; 7] = [0.2, 0.15, 0.12, 0.1, 0.1, 0.1, 0.1];
+
+/// How much better another turn than none must end.
+const CLEARLY: f64 = 0.9;
+
+/// Starts that are tried with every schedule, after one with all.
+const PROMISING: usize = 3;
+
+/// A way in which the source may lie, and where its company ends if nothing is given.
+#[derive(Clone, Debug)]
+pub struct Stand {
+    way: Way,
+    end: End,
+}
+
+/// Where a crowd ends.
+#[derive(Clone, Debug)]
+struct End {
+    at: Places,
+    /// How bad that is.
+    badness: f64,
+}
+
+impl End {
+    fn nowhere(crowd: &Crowd) -> Self {
+        Self { at: vec![None; crowd.points.len()], badness: f64::MAX }
+    }
+}
+
+/// The ways in which the figures may lie over each other, the likeliest first: as they are, unless turned they end better.
+pub fn stands(figures: Figures) -> Vec<Stand> {
+    let crowd = figures.crowd(COMPANY[1], &[], &[]);
+    let stand = |way: Way| {
+        let back = from_the_other_side(figures, &crowd, way);
+        Stand { way, end: end(figures, &crowd, way, &[], &back) }
+    };
+    let mut stands: Vec<Stand> = ways(figures).into_iter().map(stand).collect();
+    let likeliest = likeliest(stands.iter().map(|stand| stand.end.badness));
+    stands[..=likeliest].rotate_right(1);
+    stands
+}
+
+/// Where a crowd comes to lie on the target.
+pub fn best(figures: Figures, stands: &[Stand], crowd: &Crowd) -> Places {
+    let given: Vec<Pair> = crowd.points.iter().filter_map(|p| Some((1.0, p.place, p.given.as_ref()?.place))).collect();
+    let Some(first) = stands.first() else { return vec![None; crowd.points.len()] };
+    let end = |stand: &Stand| end(figures, crowd, stand.way, &given, &stand.end.at);
+    match given.len() {
+        0 => figures.agree(crowd, crowd.with_strangers(&first.end.at), &REACHES).at,
+        1..TELLING => {
+            let mut ends: Vec<End> = stands.iter().map(end).collect();
+            ends.swap_remove(likeliest(ends.iter().map(|end| end.badness))).at
+        }
+        _ => {
+            let fits_better = |a, b| if misfit(b, &given) < misfit(a, &given) { b } else { a };
+            end(stands.iter().fold(first, fits_better)).at
+        }
+    }
+}
+
+/// Of ends with these badnesses the first, unless another is clearly better.
+fn likeliest(badness: impl Iterator<Item = f64>) -> usize {
+    let badness: Vec<f64> = badness.collect();
+    let best = (0..badness.len()).min_by(|&a, &b| badness[a].total_cmp(&badness[b])).unwrap_or(0);
+    if badness.get(best) < badness.first().map(|first| CLEARLY * first).as_ref() { best } else { 0 }
+}
+
+/// Where a crowd ends if it is laid over the target in one way, or begins with `other` places of its company.
+fn end(figures: Figures, crowd: &Crowd, way: Way, given: &[Pair], other: &[Option<u32>]) -> End {
+    let few = crowd.with_company(COMPANY[0]);
+    let mut starts = starts(figures, &few, way, given);
+    starts.push(few.with_strangers(other));
+    starts.sort_unstable();
+    starts.dedup();
+    let start = best_of(figures, &few, &starts, given.len() >= TELLING);
+    let mut consensus = figures.agree(crowd, crowd.with_newcomers(&few, &start.at), &REACHES);
+    // Before the round with which badness is measured.
+    let at = consensus.at.clone();
+    End { at, badness: consensus.badness() }
+}
+
+/// Places of a crowd to begin with: where the other figure's company is that comes to lie nearest to each.
+fn from_the_other_side(figures: Figures, crowd: &Crowd, way: Way) -> Places {
+    let back = figures.reversed();
+    let others = back.crowd(COMPANY[0], &[], &[]);
+    let there = best_of(back, &others, &starts(back, &others, way.reversed(figures), &[]), false).at;
+    let nearest = |sample: u32| {
+        let row = figures.source.row(sample);
+        let far = (0..).zip(&there).filter_map(|(other, at)| Some((other, row[(*at)? as usize])));
+        far.min_by(|a, b| a.1.total_cmp(&b.1)).map(|nearest| nearest.0)
+    };
+    (0..crowd.company as u32).map(nearest).collect()
+}
+
+/// The outcome that is best, of several starts. `told`: given pairs tell how the figures lie.
+fn best_of(figures: Figures, crowd: &Crowd, starts: &[Places], told: bool) -> End {
+    let schedules: [&[Rules]; 3] = [
+        // What is far may be of another length: it would undo a good start.
+        &[rules(0.3, 0.75), rules(0.3, 0.75), rules(0.2, 0.75), rules(0.2, 0.75)],
+        &[rules(1.0, 0.75), rules(0.5, 0.75), rules(0.3, 0.75), rules(0.2, 0.75)],
+        &[rules(1.0, 0.15), rules(1.0, 0.15), rules(0.5, 0.3), rules(0.3, 0.75), rules(0.2, 0.75)],
+    ];
+    // Where enough is given, the first gains nothing.
+    let schedules = if told { &schedules[1..] } else { &schedules };
+    let run = |start: &Places, schedule: &[Rules]| run(figures.target, crowd, start.clone(), schedule);
+    let mut ends: Vec<(End, &Places)> = starts.iter().map(|start| (run(start, schedules[0]), start)).collect();
+    ends.sort_by(|a, b| a.0.badness.total_cmp(&b.0.badness));
+    let again = ends.iter().take(PROMISING).flat_map(|(_, start)| schedules[1..].iter().map(|rest| run(start, rest)));
+    let again: Vec<End> = again.collect();
+    let all = ends.into_iter().map(|(end, _)| end).chain(again);
+    all.min_by(|a, b| a.badness.total_cmp(&b.badness)).unwrap_or_else(|| End::nowhere(crowd))
+}
+
+fn rules(reach: f64, place: f64) -> Rules {
+    Rules { reach, place, ..LAST }
+}
+
+fn run(target: &Surface, crowd: &Crowd, start: Places, schedule: &[Rules]) -> End {
+    let mut consensus = Consensus::new(target, CONSIDERED, &crowd.points, &crowd.distances, start);
+    schedule.iter().for_each(|rules| consensus.round(rules));
+    let badness = consensus.badness();
+    End { at: consensus.at, badness }
+}
+
+/// How far given pairs stay apart when the turned source is only shifted and made larger or smaller, in squares.
+fn misfit(stand: &Stand, given: &[Pair]) -> f64 {
+    let motion = Similarity::fit(given.iter().map(|&(w, p, q)| (w, stand.way.turn * p, q)));
+    let off = |&(_, p, q): &Pair| {
+        let (from, to) = (stand.way.turn * p - motion.from, q - motion.to);
+        (motion.scale * from).distance_squared(to)
+    };
+    given.iter().map(off).sum()
+}
+
+/// The ways worth trying: as the figures are, turned as the shapes agree best at first sight, and the better of the two
+/// turned half round. First sight tells the axes, but not front from back.
+fn ways(figures: Figures) -> Vec<Way> {
+    let crowd = figures.crowd(COMPANY[0], &[], &[]);
+    let score = |&turn: &DMat3| {
+        let start = laid(figures.target, &crowd, &|p| turn * p, turn);
+        run(figures.target, &crowd, start, &[rules(1.0, 0.75), rules(0.3, 0.75)]).badness
+    };
+    let best = |turns: Vec<DMat3>| {
+        let scored = turns.into_iter().map(|turn| (score(&turn), turn));
+        scored.min_by(|a, b| a.0.total_cmp(&b.0)).unwrap_or((f64::MAX, DMat3::IDENTITY))
+    };
+    let turned = best(turns());
+    let first = if turned.0 < score(&DMat3::IDENTITY) { turned.1 } else { DMat3::IDENTITY };
+    let half_round = best(half_turns().map(|half| half * first).to_vec());
+    let mut turns = vec![DMat3::IDENTITY];
+    for turn in [turned.1, half_round.1] {
+        if !turns.contains(&turn) {
+            turns.push(turn);
+        }
+    }
+    turns.into_iter().map(|turn| Way::new(figures, turn)).collect()
+}
