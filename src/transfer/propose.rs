@@ -99,7 +99,7 @@ impl Proposer {
     /// Thins both meshes out and finds out which way round they lie.
     ///
     /// `faces` are #F triples of vertex numbers, `positions` #V points; the reference poses. Seams, pieces, holes and
-    /// edges of many faces are fine. About 0.5 s for 20,000 + 20,000 vertices.
+    /// edges of many faces are fine. About a second for 6,000 + 6,000 vertices.
     pub fn new(
         source_faces: &[[u32; 3]],
         source_positions: &[DVec3],

@@ -17,12 +17,6 @@ const LISTENS: usize = 48;
 /// How far the scale around a point may differ from the scale of all.
 const LOCAL_SCALE: [f64; 2] = [0.7, 1.4];
 
-/// How listening falls with the squared distance along the surface.
-const FALL: f64 = 1.5;
-
-/// How much faster it falls where a place is foretold: a limb that is held another way moves with what is nearest alone.
-const STEEPER: f64 = 1.5;
-
 /// Squared distance from the foretold place beyond which it no longer matters how far: limbs are held in many ways, and
 /// what is foretold for one from the trunk says nothing.
 const FAR: f64 = 0.02;
@@ -59,7 +53,7 @@ pub struct Target {
 /// What is weighed against what.
 #[derive(Clone, Copy, Debug)]
 pub struct Rules {
-    /// How far points listen (a share of the diagonal): what is farther counts less by the square.
+    /// How far points listen (a share of the diagonal): what is farther counts less by the third power.
     pub reach: f64,
     /// What a squared distance from where the points around would put it costs.
     pub place: f64,
@@ -195,7 +189,7 @@ impl<'a> Consensus<'a> {
         let weight = |j: usize| {
             let far = f64::from(row[j]);
             let point = &self.points[j];
-            point.weight * self.trust[j] / (far * far + rules.reach * rules.reach).powf(FALL)
+            point.weight * self.trust[j] / fall(far, rules.reach)
         };
         let others = (0..n).filter(|&j| j != i && self.at[j].is_some());
         let mut heard: Vec<(u32, f64)> = others.map(|j| (j as u32, weight(j))).collect();
@@ -209,7 +203,8 @@ impl<'a> Consensus<'a> {
             return None;
         }
         heard.iter_mut().for_each(|h| h.1 /= total);
-        let near = |j: u32, w: f64| w / (f64::from(row[j as usize]).powi(2) + rules.reach * rules.reach).powf(STEEPER);
+        // A limb that is held another way moves with what is nearest alone.
+        let near = |j: u32, w: f64| w / fall(f64::from(row[j as usize]), rules.reach);
         let pairs = heard
             .iter()
             .filter_map(|&(j, w)| Some((near(j, w), self.points[j as usize].place, self.place(j as usize)?)));
@@ -302,6 +297,12 @@ impl<'a> Consensus<'a> {
         let bare = bare.iter().map(|&b| f64::from(b * b).min(2.0 * WRONG)).sum::<f64>() / self.considered.max(1) as f64;
         own + bare
     }
+}
+
+/// How much less is listened to what is far: about alike within reach, and then by the third power of the distance.
+fn fall(far: f64, reach: f64) -> f64 {
+    let square = far * far + reach * reach;
+    square * square.sqrt()
 }
 
 /// What it costs to be away from where the others would put a point, and to face another way.
