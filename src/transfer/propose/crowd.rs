@@ -6,6 +6,9 @@ use super::surface::Surface;
 /// Samples of the source that look for their places beside the points asked for: in the first rounds, and in the last.
 pub const COMPANY: [usize; 2] = [60, 120];
 
+/// Samples of the target that are considered in the first rounds.
+pub const CONSIDERED: usize = 400;
+
 /// How much is listened to a point asked for, where a sample counts one: users' points may lie close together.
 const ASKED: f64 = 0.3;
 
@@ -97,7 +100,8 @@ impl Crowd {
         }
     }
 
-    /// Places of (at least) the company alone; the points asked for have none yet.
+    /// Places of the whole crowd from those of its company, or of a company with this one in front: the points asked for
+    /// have none yet.
     pub fn with_strangers(&self, company: &[Option<u32>]) -> Vec<Option<u32>> {
         let mut at = vec![None; self.points.len()];
         let known = self.company.min(company.len());

@@ -5,15 +5,12 @@
 //! often finds what no start from this side finds.
 
 use super::consensus::{Consensus, LAST, Rules};
-use super::crowd::{COMPANY, Crowd, Figures};
+use super::crowd::{COMPANY, CONSIDERED, Crowd, Figures};
 use super::similarity::Similarity;
 use super::starts::{Pair, Places, TELLING, laid, starts};
 use super::surface::Surface;
 use super::ways::{Way, half_turns, turns};
 use glam::DMat3;
-
-/// Samples of the target that are considered in the first rounds.
-pub const CONSIDERED: usize = 400;
 
 /// How far points listen in the rounds that find the places.
 const REACHES: [f64; 7] = [0.2, 0.15, 0.12, 0.1, 0.1, 0.1, 0.1];

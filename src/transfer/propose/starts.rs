@@ -1,7 +1,7 @@
 //! Where a crowd may begin: the source laid over the target, also pulled to given pairs and to tips.
 
-use super::crowd::{Crowd, Figures};
-use super::stands::CONSIDERED;
+use super::consensus::Point;
+use super::crowd::{CONSIDERED, Crowd, Figures};
 use super::surface::Surface;
 use super::tips;
 use super::ways::Way;
@@ -66,7 +66,7 @@ pub fn starts(figures: Figures, crowd: &Crowd, way: Way, given: &[Pair]) -> Vec<
 /// For each point, the considered sample of the target nearest to where a map puts it, that faces the same way.
 pub fn laid(target: &Surface, crowd: &Crowd, map: &dyn Fn(DVec3) -> DVec3, turn: DMat3) -> Places {
     let considered = CONSIDERED.min(target.len());
-    let nearest = |point: &super::consensus::Point| {
+    let nearest = |point: &Point| {
         let (place, normal) = (map(point.place), (turn * point.normal).normalize_or_zero());
         let cost = |s: u32| {
             target.places[s as usize].distance_squared(place) + FACING * (1.0 - target.normals[s as usize].dot(normal))
