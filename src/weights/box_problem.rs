@@ -119,6 +119,8 @@ pub struct Problem<'a> {
     pub(super) largest: f64,
     /// Marks of vertices.
     pub(super) marks: Vec<bool>,
+    /// How many free weights each force depends on, while guessing.
+    ties: Vec<u32>,
     /// Which force counts as none, in shares of the largest.
     no_force: f64,
 }
@@ -135,6 +137,7 @@ impl<'a> Problem<'a> {
             inner: vec![0.0; n],
             largest: 0.0,
             marks: vec![false; n],
+            ties: vec![0; n],
             no_force: match members.len() {
                 n if n <= SMALL => FORCE_IF_SMALL,
                 n if n <= LARGE => FORCE,
@@ -148,6 +151,7 @@ impl<'a> Problem<'a> {
         let (mut least, mut since) = (usize::MAX, 0);
         self.to_bounds(column);
         self.measure(&column.weights);
+        self.free(column).iter().for_each(|&v| self.tie(v, true));
         for _ in 0..ROUNDS {
             if !self.free_step(column) {
                 return false;
@@ -190,16 +194,26 @@ impl<'a> Problem<'a> {
         self.members.iter().filter(|v| column.states[**v as usize] == State::Free).copied().collect()
     }
 
-    /// One Newton step of the free weights: no force is left on them. The others' follow.
+    /// Counts a weight among those that forces depend on, or no longer.
+    fn tie(&mut self, v: u32, free: bool) {
+        for (u, _) in self.quadratic.matrix.row(v as usize) {
+            let ties = &mut self.ties[u];
+            *ties = if free { *ties + 1 } else { ties.saturating_sub(1) };
+        }
+    }
+
+    /// One Newton step of the free weights: no force is left on them. Those that depend on them follow.
     fn free_step(&mut self, column: &mut Column) -> bool {
         if !self.newton(column) {
             return false;
         }
         for &v in self.members {
-            self.forces[v as usize] = match column.states[v as usize] {
-                State::Free => 0.0,
-                _ => self.quadratic.matrix.times(v as usize, &column.weights),
-            };
+            let force = &mut self.forces[v as usize];
+            match column.states[v as usize] {
+                State::Free => *force = 0.0,
+                _ if self.ties[v as usize] > 0 => *force = self.quadratic.matrix.times(v as usize, &column.weights),
+                _ => {}
+            }
         }
         self.largest = self.largest_force();
         true
@@ -234,7 +248,7 @@ impl<'a> Problem<'a> {
     }
 
     /// Among `vertices`, frees what is held the wrong way and holds what has left the range; those corrected.
-    pub(super) fn correct(&self, column: &mut Column, vertices: &[u32]) -> Vec<u32> {
+    pub(super) fn correct(&mut self, column: &mut Column, vertices: &[u32]) -> Vec<u32> {
         let mut corrected = Vec::new();
         for &v in vertices {
             let (state, w, force) = (column.states[v as usize], column.weights[v as usize], self.forces[v as usize]);
@@ -248,6 +262,7 @@ impl<'a> Problem<'a> {
             };
             if next != state {
                 column.states[v as usize] = next;
+                self.tie(v, next == State::Free);
                 corrected.push(v);
             }
         }

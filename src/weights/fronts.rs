@@ -54,22 +54,24 @@ fn to_bounds(problem: &mut Problem, column: &mut Column, vertices: &[u32]) {
 
 /// Everything within [`REACH`] of a set, and then what else is [`TIED`] to that; and how many the former are.
 fn around(problem: &mut Problem, vertices: &[u32]) -> (Vec<u32>, usize) {
+    // One place more than there are vertices: each that is met is put there, and counted if it is new, without a branch.
     let mut set = vertices.to_vec();
-    set.iter().for_each(|&v| problem.marks[v as usize] = true);
+    set.resize(problem.marks.len() + 1, 0);
+    set[..vertices.len()].iter().for_each(|&v| problem.marks[v as usize] = true);
     // Where the outermost ring begins, and the end of every ring.
-    let (mut from, mut ends) = (0, Vec::new());
+    let (mut from, mut count, mut ends) = (0, vertices.len(), Vec::new());
     for _ in 0..REACH + TIED {
-        let end = set.len();
+        let end = count;
         for i in from..end {
             for (u, _) in problem.quadratic.laplacian.row(set[i] as usize) {
-                if !std::mem::replace(&mut problem.marks[u], true) {
-                    set.push(u as u32);
-                }
+                set[count] = u as u32;
+                count += usize::from(!std::mem::replace(&mut problem.marks[u], true));
             }
         }
         from = end;
-        ends.push(set.len());
+        ends.push(count);
     }
+    set.truncate(count);
     set.iter().for_each(|&v| problem.marks[v as usize] = false);
     (set, ends[REACH - 1])
 }

@@ -64,26 +64,26 @@ impl Front {
     /// Solves L y = x for the pivots, `x` being one number for each row of the panel, and takes from the rows beneath what
     /// the pivots contribute there.
     #[inline(always)]
-    pub fn forward(&self, x: &mut [f64]) {
+    pub fn forward<S: Simd>(&self, simd: S, x: &mut [f64]) {
         for first in (0..self.pivots).step_by(TILE) {
             match self.pivots - first {
-                1 => forward(self.block::<1>(first), x, first),
-                2 => forward(self.block::<2>(first), x, first),
-                3 => forward(self.block::<3>(first), x, first),
-                _ => forward(self.block::<TILE>(first), x, first),
+                1 => forward(simd, self.block::<1>(first), x, first),
+                2 => forward(simd, self.block::<2>(first), x, first),
+                3 => forward(simd, self.block::<3>(first), x, first),
+                _ => forward(simd, self.block::<TILE>(first), x, first),
             }
         }
     }
 
     /// Solves Lᵀ x = y for the pivots, with the solution in the rows beneath them.
     #[inline(always)]
-    pub fn backward(&self, x: &mut [f64]) {
+    pub fn backward<S: Simd>(&self, simd: S, x: &mut [f64]) {
         for first in (0..self.pivots).step_by(TILE).rev() {
             match self.pivots - first {
-                1 => backward(self.block::<1>(first), x, first),
-                2 => backward(self.block::<2>(first), x, first),
-                3 => backward(self.block::<3>(first), x, first),
-                _ => backward(self.block::<TILE>(first), x, first),
+                1 => backward(simd, self.block::<1>(first), x, first),
+                2 => backward(simd, self.block::<2>(first), x, first),
+                3 => backward(simd, self.block::<3>(first), x, first),
+                _ => backward(simd, self.block::<TILE>(first), x, first),
             }
         }
     }
@@ -102,7 +102,7 @@ impl Front {
 
 /// Solves for the pivots of some columns, the first being that of row `first`.
 #[inline(always)]
-fn forward<const N: usize>(columns: [&[f64]; N], x: &mut [f64], first: usize) {
+fn forward<S: Simd, const N: usize>(simd: S, columns: [&[f64]; N], x: &mut [f64], first: usize) {
     let (block, below) = x[first..].split_at_mut(N);
     for j in 0..N {
         block[j] /= columns[j][first + j];
@@ -110,29 +110,38 @@ fn forward<const N: usize>(columns: [&[f64]; N], x: &mut [f64], first: usize) {
             block[i] -= columns[j][first + i] * block[j];
         }
     }
-    let mut beneath = [&columns[0][..0]; N];
-    for j in 0..N {
-        beneath[j] = &columns[j][first + N..][..below.len()];
-    }
-    for i in 0..below.len() {
-        let mut sum = 0.0;
+    let factors: [S::f64s; N] = std::array::from_fn(|j| simd.splat_f64s(-block[j]));
+    let (vectors, rest) = S::as_mut_simd_f64s(below);
+    let beneath = columns.map(|column| S::as_simd_f64s(&column[first + N..]));
+    for (i, x) in vectors.iter_mut().enumerate() {
         for j in 0..N {
-            sum += beneath[j][i] * block[j];
+            *x = simd.mul_add_e_f64s(beneath[j].0[i], factors[j], *x);
         }
-        below[i] -= sum;
+    }
+    for (i, x) in rest.iter_mut().enumerate() {
+        for j in 0..N {
+            *x -= beneath[j].1[i] * block[j];
+        }
     }
 }
 
 /// The same with the transposed columns.
 #[inline(always)]
-fn backward<const N: usize>(columns: [&[f64]; N], x: &mut [f64], first: usize) {
+fn backward<S: Simd, const N: usize>(simd: S, columns: [&[f64]; N], x: &mut [f64], first: usize) {
     let (block, below) = x[first..].split_at_mut(N);
-    let mut beneath = [&columns[0][..0]; N];
-    for j in 0..N {
-        beneath[j] = &columns[j][first + N..][..below.len()];
+    let (vectors, rest) = S::as_simd_f64s(below);
+    let beneath = columns.map(|column| S::as_simd_f64s(&column[first + N..]));
+    let mut parts = [simd.splat_f64s(0.0); N];
+    for (i, x) in vectors.iter().enumerate() {
+        for j in 0..N {
+            parts[j] = simd.mul_add_e_f64s(beneath[j].0[i], *x, parts[j]);
+        }
     }
-    let mut sums = dots(beneath, below);
+    let mut sums = parts.map(|part| simd.reduce_sum_f64s(part));
     for j in (0..N).rev() {
+        for (i, x) in rest.iter().enumerate() {
+            sums[j] += beneath[j].1[i] * x;
+        }
         for i in j + 1..N {
             sums[j] += columns[j][first + i] * block[i];
         }
@@ -143,32 +152,6 @@ fn backward<const N: usize>(columns: [&[f64]; N], x: &mut [f64], first: usize) {
 /// Where a four of columns begins in the rest, which has `side` rows.
 fn rest_from(side: usize, column: usize) -> usize {
     side * column - column * column.saturating_sub(TILE) / 2
-}
-
-/// The sums of products of some vectors with another, all of one length; each in parts side by side.
-#[inline(always)]
-fn dots<const N: usize>(columns: [&[f64]; N], x: &[f64]) -> [f64; N] {
-    const SIDE: usize = 8;
-    let whole = x.len() - x.len() % SIDE;
-    let mut parts = [[0.0; SIDE]; N];
-    for first in (0..whole).step_by(SIDE) {
-        let x = &x[first..first + SIDE];
-        for j in 0..N {
-            let column = &columns[j][first..first + SIDE];
-            for i in 0..SIDE {
-                parts[j][i] += column[i] * x[i];
-            }
-        }
-    }
-    let mut sums = [0.0; N];
-    for j in 0..N {
-        let p = parts[j];
-        sums[j] = ((p[0] + p[4]) + (p[1] + p[5])) + ((p[2] + p[6]) + (p[3] + p[7]));
-        for i in whole..x.len() {
-            sums[j] += columns[j][i] * x[i];
-        }
-    }
-    sums
 }
 
 /// The elimination, with the widest vectors that the machine has.

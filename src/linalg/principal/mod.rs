@@ -23,6 +23,8 @@ pub use tree::Tree;
 pub struct Principal {
     /// The set, ascending.
     set: Vec<u32>,
+    /// What has been in it and is no longer, but may still be among the rows of a part.
+    left: Vec<u32>,
     /// #nodes: what was eliminated; nothing where no column is in the set.
     parts: Vec<Option<Arc<Part>>>,
     /// #nodes: whether anything was eliminated there or below.
@@ -48,9 +50,13 @@ pub struct Room {
     place: Vec<u32>,
     /// #nodes: whether each is to be done again.
     stale: Vec<bool>,
+    /// #unknowns: zeros but while something is solved.
     x: Vec<f64>,
-    /// Parts that are no longer needed.
-    spare: Vec<Part>,
+    /// Nodes below the one at hand, and where one's rows are in it.
+    below: Vec<u32>,
+    places: Vec<usize>,
+    /// Parts that are no longer needed here.
+    spare: Vec<Arc<Part>>,
 }
 
 impl Room {
@@ -62,8 +68,21 @@ impl Room {
             place: vec![NONE; n],
             stale: vec![false; tree.size()],
             x: vec![0.0; n],
+            below: Vec::new(),
+            places: Vec::new(),
             spare: Vec::new(),
         }
+    }
+
+    /// A part that no other factor has: this one, or a spare one, or a new one.
+    fn own(&mut self, part: Option<Arc<Part>>) -> Arc<Part> {
+        let mut own = part.filter(is_own);
+        while own.is_none()
+            && let Some(spare) = self.spare.pop()
+        {
+            own = Some(spare).filter(is_own);
+        }
+        own.unwrap_or_default()
     }
 }
 
@@ -92,9 +111,8 @@ impl Principal {
                 next = tree.parent(node);
             }
         };
-        for &gone in &without(&self.set, set) {
-            touch(tree.node(gone));
-        }
+        let gone = without(&self.set, set);
+        gone.iter().for_each(|&v| touch(tree.node(v)));
         for &new in &without(set, &self.set) {
             touch(tree.node(new));
             // Below, its row was left out.
@@ -102,8 +120,11 @@ impl Principal {
         }
         stale.sort_unstable();
         stale.iter().for_each(|&node| room.stale[node as usize] = false);
-        self.set = set.to_vec();
+        self.set.clear();
+        self.set.extend_from_slice(set);
         set.iter().for_each(|&v| room.inside[v as usize] = true);
+        self.left.extend(gone);
+        self.left.retain(|&v| !room.inside[v as usize]);
         let done = stale.iter().all(|&node| self.eliminate(matrix, tree, node, room));
         set.iter().for_each(|&v| room.inside[v as usize] = false);
         if done { Ok(()) } else { Err(NotPositiveDefinite) }
@@ -111,15 +132,15 @@ impl Principal {
 
     /// Does a node again; false where that cannot be.
     fn eliminate(&mut self, matrix: &Symmetric, tree: &Tree, node: u32, room: &mut Room) -> bool {
-        let mut part =
-            self.parts[node as usize].take().and_then(Arc::into_inner).or_else(|| room.spare.pop()).unwrap_or_default();
-        let Part { columns, rows, front } = &mut part;
+        let mut shared = room.own(self.parts[node as usize].take());
+        let Some(part) = Arc::get_mut(&mut shared) else { return false };
+        let Part { columns, rows, front } = part;
         columns.clear();
         columns.extend(tree.columns(node).filter(|v| room.inside[*v as usize]));
         let below = tree.children(node).iter().any(|&child| self.alive[child as usize]);
         self.alive[node as usize] = below || !columns.is_empty();
         if columns.is_empty() {
-            room.spare.push(part);
+            room.spare.push(shared);
             return true;
         }
         rows.clear();
@@ -132,35 +153,40 @@ impl Principal {
         for (column, &v) in front.panel.chunks_exact_mut(height).zip(&*columns) {
             for (u, value) in matrix.row_from_diagonal(v as usize) {
                 if let Some(entry) = column.get_mut(room.place[u] as usize) {
-                    *entry += value;
+                    *entry = value;
                 }
             }
         }
         if below {
-            self.add_children(tree, node, front, &room.place);
+            self.find_below(tree, node, &mut room.below);
+            let parts = room.below.iter().filter_map(|&child| self.parts[child as usize].as_deref());
+            parts.for_each(|part| part.add_to(front, &room.place, &mut room.places));
         }
         columns.iter().chain(&*rows).for_each(|&v| room.place[v as usize] = NONE);
         let done = front.eliminate();
-        self.parts[node as usize] = Some(Arc::new(part));
+        self.parts[node as usize] = Some(shared);
         done
     }
 
-    /// Adds what the nodes below have left, those that eliminated something and have none such in between.
-    fn add_children(&self, tree: &Tree, node: u32, front: &mut Front, place: &[u32]) {
-        let mut ahead = vec![node];
-        while let Some(node) = ahead.pop() {
-            for &child in tree.children(node).iter().filter(|child| self.alive[**child as usize]) {
-                match &self.parts[child as usize] {
-                    Some(part) => part.add_to(front, place),
-                    None => ahead.push(child),
-                }
+    /// The nodes below a node that eliminated something and have none such in between.
+    fn find_below(&self, tree: &Tree, node: u32, below: &mut Vec<u32>) {
+        let children = |node: u32| tree.children(node).iter().filter(|child| self.alive[**child as usize]);
+        below.clear();
+        below.extend(children(node));
+        let mut at = 0;
+        while let Some(&child) = below.get(at) {
+            if self.parts[child as usize].is_some() {
+                at += 1;
+            } else {
+                below.swap_remove(at);
+                below.extend(children(child));
             }
         }
     }
 
     /// Leaves its memory to the next factors that are computed with this room.
     pub fn empty(self, room: &mut Room) {
-        room.spare.extend(self.parts.into_iter().flatten().filter_map(Arc::into_inner));
+        room.spare.extend(self.parts.into_iter().flatten());
     }
 
     /// Replaces right-hand sides by solutions at the unknowns of the set, `x` being one number for each of them.
@@ -180,32 +206,34 @@ impl WithSimd for Solution<'_> {
     type Output = ();
 
     #[inline(always)]
-    fn with_simd<S: Simd>(self, _simd: S) {
+    fn with_simd<S: Simd>(self, simd: S) {
         let Self { factor, x, room } = self;
         let all = &mut room.x;
         let mut of_node = Vec::new();
-        all.fill(0.0);
         factor.set.iter().zip(&*x).for_each(|(&v, &value)| all[v as usize] = value);
         for part in factor.parts.iter().flatten() {
             part.gather(all, &mut of_node);
-            part.front.forward(&mut of_node);
-            part.scatter(&of_node, all);
+            part.front.forward(simd, &mut of_node);
+            let (above, below) = part.split(&of_node);
+            scatter(&part.columns, above, all);
+            scatter(&part.rows, below, all);
         }
-        // Rows that have left the set since a node was done are zero.
-        for (&v, value) in factor.set.iter().zip(&mut *x) {
-            *value = all[v as usize];
-        }
-        all.fill(0.0);
-        factor.set.iter().zip(&*x).for_each(|(&v, &value)| all[v as usize] = value);
+        factor.left.iter().for_each(|&v| all[v as usize] = 0.0);
         for part in factor.parts.iter().flatten().rev() {
             part.gather(all, &mut of_node);
-            part.front.backward(&mut of_node);
-            part.scatter(&of_node, all);
+            part.front.backward(simd, &mut of_node);
+            scatter(&part.columns, part.split(&of_node).0, all);
         }
         for (&v, value) in factor.set.iter().zip(x) {
-            *value = all[v as usize];
+            *value = std::mem::take(&mut all[v as usize]);
         }
     }
+}
+
+/// Puts values where unknowns are.
+#[inline(always)]
+fn scatter(unknowns: &[u32], values: &[f64], all: &mut [f64]) {
+    unknowns.iter().zip(values).for_each(|(&v, &value)| all[v as usize] = value);
 }
 
 impl Part {
@@ -220,17 +248,16 @@ impl Part {
         values.resize(self.front.rows(), 0.0);
     }
 
-    /// Puts values where its unknowns are.
+    /// Such values: those of its columns and those of its rows, each padded.
     #[inline(always)]
-    fn scatter(&self, values: &[f64], all: &mut [f64]) {
-        let (above, below) = values.split_at(padded(self.columns.len()));
-        self.columns.iter().zip(above).for_each(|(&v, &value)| all[v as usize] = value);
-        self.rows.iter().zip(below).for_each(|(&v, &value)| all[v as usize] = value);
+    fn split<'a>(&self, values: &'a [f64]) -> (&'a [f64], &'a [f64]) {
+        values.split_at(padded(self.columns.len()))
     }
 
-    /// Adds what is left to a node above; `place` is where each row is there.
-    fn add_to(&self, front: &mut Front, place: &[u32]) {
-        let places: Vec<usize> = self.rows.iter().map(|&v| place[v as usize] as usize).collect();
+    /// Adds what is left to a node above; `place` is where each row is there, `places` room.
+    fn add_to(&self, front: &mut Front, place: &[u32], places: &mut Vec<usize>) {
+        places.clear();
+        places.extend(self.rows.iter().map(|&v| place[v as usize] as usize));
         let (top, rows) = (padded(front.pivots), front.rows());
         for (j, &to) in places.iter().enumerate() {
             let (left, first) = self.front.rest_column(j);
@@ -251,6 +278,10 @@ impl Part {
             }
         }
     }
+}
+
+fn is_own(part: &Arc<Part>) -> bool {
+    Arc::strong_count(part) == 1
 }
 
 /// What is in one ascending list and not in another.
