@@ -132,19 +132,28 @@ fn groups(rig: &Rig, functions: &Functions, links: &Links, points: &[DVec3], han
     let count = rig.groups.iter().max().map_or(1, |&g| g as usize + 1);
     let mut k = vec![vec![Axes::default(); handles]; count];
     let mut p = vec![DMat3::ZERO; count];
+    // What a vertex' edges add up to in the groups of its neighbours: mostly in its own alone.
+    let mut shares: Vec<(u32, DVec3)> = Vec::new();
     for (v, (&group, &here)) in rig.groups.iter().zip(points).enumerate() {
-        let (k, p) = (&mut k[group as usize], &mut p[group as usize]);
-        let mut all = DVec3::ZERO;
+        let mut own = DVec3::ZERO;
         for &(u, weight) in links.of(v) {
             let edge = here - points[u as usize];
             let half = 0.5 * weight * edge;
-            *p += DMat3::from_cols(edge * half.x, edge * half.y, edge * half.z);
-            functions.spread(u as usize, -half, k);
-            all += half;
+            p[group as usize] += DMat3::from_cols(edge * half.x, edge * half.y, edge * half.z);
+            own += half;
+            add_share(&mut shares, rig.groups[u as usize], half);
         }
-        functions.spread(v, all, k);
+        add_share(&mut shares, group, own);
+        shares.drain(..).for_each(|(group, share)| functions.spread(v, share, &mut k[group as usize]));
     }
     k.iter().zip(p).map(|(k, p)| Group { k: as_rows(k), p }).collect()
+}
+
+fn add_share(shares: &mut Vec<(u32, DVec3)>, group: u32, share: DVec3) {
+    match shares.iter_mut().find(|(known, _)| *known == group) {
+        Some((_, sum)) => *sum += share,
+        None => shares.push((group, share)),
+    }
 }
 
 fn add_scaled(sum: &mut [f64; 4], factor: f64, x: &[f64; 4]) {
