@@ -93,12 +93,13 @@ impl Biharmonic {
         }
     }
 
-    /// A column from nothing.
+    /// A column from nothing. Its factor is not kept: most weights are never updated, and memory that the next handle
+    /// uses again need not be fetched.
     fn column(&self, places: &[u32], handle: usize) -> Column {
         let own = places[handle];
         let start = levels::guess(&self.levels, places, own);
         let fine = self.finest();
-        box_problem::solve(&fine.quadratic, fine.members_around(own), start)
+        Column { factor: None, ..box_problem::solve(&fine.quadratic, fine.members_around(own), start) }
     }
 
     /// The column of a handle that has stayed, while others came and went.
