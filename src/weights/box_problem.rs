@@ -84,7 +84,7 @@ pub struct Column {
     pub energy: f64,
     /// See [`super::Weights::kkt_residual`].
     pub residual: f64,
-    /// The last factor, if it is not too large to keep.
+    /// The last factor, unless it is too large to keep or nothing is likely to be updated.
     pub factor: Option<Principal>,
 }
 
