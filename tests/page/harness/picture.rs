@@ -1,9 +1,6 @@
 //! Looking at a screenshot.
 
 use std::collections::BTreeSet;
-use std::fs::File;
-use std::io::BufWriter;
-use std::path::Path;
 
 /// A picture of 8-bit RGB, rows from top to bottom.
 pub struct Picture {
@@ -29,19 +26,6 @@ impl Picture {
             _ => [p[0], p[1], p[2]],
         });
         Self { width: info.width as usize, height: info.height as usize, pixels: pixels.collect() }
-    }
-
-    /// Writes it as a PNG.
-    pub fn save(&self, path: &Path) -> std::io::Result<()> {
-        if let Some(folder) = path.parent() {
-            std::fs::create_dir_all(folder)?;
-        }
-        let (width, height) = (u32::try_from(self.width), u32::try_from(self.height));
-        let (width, height) = (width.unwrap_or(u32::MAX), height.unwrap_or(u32::MAX));
-        let mut encoder = png::Encoder::new(BufWriter::new(File::create(path)?), width, height);
-        encoder.set_color(png::ColorType::Rgb);
-        encoder.write_header()?.write_image_data(self.pixels.as_flattened())?;
-        Ok(())
     }
 
     /// A rectangle of it, kept inside.
