@@ -1,13 +1,18 @@
 //! Dense elimination of the leading columns of a symmetric matrix, in tiles of two vectors by four columns.
 
+use super::symmetric::Symmetric;
 use pulp::{Arch, Simd, WithSimd};
 use std::ops::Range;
 
 /// Rows and columns are counted in fours; what is over is zero.
 pub const TILE: usize = 4;
 
-/// Columns that are eliminated before they are subtracted from the rest.
+/// Columns that are eliminated before they are subtracted from others of their slab.
 const BLOCK: usize = 2 * TILE;
+
+/// Columns that are eliminated before they are subtracted from everything else: so many that they stay near the processor
+/// meanwhile.
+const SLAB: usize = 64;
 
 /// The next multiple of [`TILE`].
 pub fn padded(count: usize) -> usize {
@@ -55,6 +60,43 @@ impl Front {
         (start..start + rows, first)
     }
 
+    /// Puts a matrix's entries, from the diagonal on, in the pivots' columns, `columns` being the numbers of these. `places` is
+    /// the row of each unknown here, or more than there are rows.
+    pub fn set(&mut self, matrix: &Symmetric, columns: impl Iterator<Item = u32>, places: &[u32]) {
+        let rows = self.rows();
+        for (column, v) in self.panel.chunks_exact_mut(rows).zip(columns) {
+            for (u, value) in matrix.row_from_diagonal(v as usize) {
+                if let Some(entry) = column.get_mut(places[u] as usize) {
+                    *entry = value;
+                }
+            }
+        }
+    }
+
+    /// Adds what another front left to be eliminated. `places` is where each of the rows beneath its pivots is here,
+    /// ascending, or more than there are rows.
+    pub fn add(&mut self, other: &Self, places: &[usize]) {
+        let (top, rows) = (padded(self.pivots), self.rows());
+        for (j, &to) in places.iter().enumerate() {
+            let (left, first) = other.rest_column(j);
+            let left = &other.rest[left][j - first..];
+            let (column, from) = match to {
+                to if to < self.pivots => (&mut self.panel[to * rows..(to + 1) * rows], 0),
+                to if to < rows => {
+                    let (column, first) = self.rest_column(to - top);
+                    (&mut self.rest[column], top + first)
+                }
+                // It is not among the unknowns here.
+                _ => continue,
+            };
+            for (place, value) in places[j..].iter().zip(left) {
+                if let Some(entry) = column.get_mut(place.wrapping_sub(from)) {
+                    *entry += value;
+                }
+            }
+        }
+    }
+
     /// Replaces the panel by the factor's columns and the rest by what is left to be eliminated; false where a pivot is
     /// not positive.
     pub fn eliminate(&mut self) -> bool {
@@ -84,6 +126,32 @@ impl Front {
                 2 => backward(simd, self.block::<2>(first), x, first),
                 3 => backward(simd, self.block::<3>(first), x, first),
                 _ => backward(simd, self.block::<TILE>(first), x, first),
+            }
+        }
+    }
+
+    /// [`Front::forward`] for some vectors of right-hand sides: `x` is V vectors for each row.
+    #[inline(always)]
+    pub fn forward_together<S: Simd, const V: usize>(&self, simd: S, x: &mut [[S::f64s; V]]) {
+        for first in (0..self.pivots).step_by(TILE) {
+            match self.pivots - first {
+                1 => forward_together(simd, self.block::<1>(first), x, first),
+                2 => forward_together(simd, self.block::<2>(first), x, first),
+                3 => forward_together(simd, self.block::<3>(first), x, first),
+                _ => forward_together(simd, self.block::<TILE>(first), x, first),
+            }
+        }
+    }
+
+    /// [`Front::backward`] for some vectors of right-hand sides.
+    #[inline(always)]
+    pub fn backward_together<S: Simd, const V: usize>(&self, simd: S, x: &mut [[S::f64s; V]]) {
+        for first in (0..self.pivots).step_by(TILE).rev() {
+            match self.pivots - first {
+                1 => backward_together(simd, self.block::<1>(first), x, first),
+                2 => backward_together(simd, self.block::<2>(first), x, first),
+                3 => backward_together(simd, self.block::<3>(first), x, first),
+                _ => backward_together(simd, self.block::<TILE>(first), x, first),
             }
         }
     }
@@ -149,6 +217,68 @@ fn backward<S: Simd, const N: usize>(simd: S, columns: [&[f64]; N], x: &mut [f64
     }
 }
 
+/// [`forward`] for some vectors of right-hand sides.
+#[inline(always)]
+fn forward_together<S: Simd, const N: usize, const V: usize>(
+    simd: S,
+    columns: [&[f64]; N],
+    x: &mut [[S::f64s; V]],
+    first: usize,
+) {
+    let (block, below) = x[first..].split_at_mut(N);
+    for j in 0..N {
+        block[j] = times(simd, block[j], 1.0 / columns[j][first + j]);
+        for i in j + 1..N {
+            block[i] = plus(simd, block[j], -columns[j][first + i], block[i]);
+        }
+    }
+    let taken: [_; N] = std::array::from_fn(|j| block[j].map(|x| simd.neg_f64s(x)));
+    let beneath = columns.map(|column| &column[first + N..][..below.len()]);
+    for (i, x) in below.iter_mut().enumerate() {
+        for j in 0..N {
+            *x = plus(simd, taken[j], beneath[j][i], *x);
+        }
+    }
+}
+
+/// [`backward`] for some vectors of right-hand sides.
+#[inline(always)]
+fn backward_together<S: Simd, const N: usize, const V: usize>(
+    simd: S,
+    columns: [&[f64]; N],
+    x: &mut [[S::f64s; V]],
+    first: usize,
+) {
+    let (block, below) = x[first..].split_at_mut(N);
+    let beneath = columns.map(|column| &column[first + N..][..below.len()]);
+    let mut taken = [[simd.splat_f64s(0.0); V]; N];
+    for (i, x) in below.iter().enumerate() {
+        for j in 0..N {
+            taken[j] = plus(simd, *x, -beneath[j][i], taken[j]);
+        }
+    }
+    for j in (0..N).rev() {
+        for i in j + 1..N {
+            taken[j] = plus(simd, block[i], -columns[j][first + i], taken[j]);
+        }
+        let left = plus(simd, taken[j], 1.0, block[j]);
+        block[j] = times(simd, left, 1.0 / columns[j][first + j]);
+    }
+}
+
+/// x a.
+#[inline(always)]
+fn times<S: Simd, const V: usize>(simd: S, x: [S::f64s; V], a: f64) -> [S::f64s; V] {
+    x.map(|x| simd.mul_f64s(x, simd.splat_f64s(a)))
+}
+
+/// x a + y.
+#[inline(always)]
+fn plus<S: Simd, const V: usize>(simd: S, x: [S::f64s; V], a: f64, y: [S::f64s; V]) -> [S::f64s; V] {
+    let a = simd.splat_f64s(a);
+    std::array::from_fn(|k| simd.mul_add_e_f64s(x[k], a, y[k]))
+}
+
 /// Where a four of columns begins in the rest, which has `side` rows.
 fn rest_from(side: usize, column: usize) -> usize {
     side * column - column * column.saturating_sub(TILE) / 2
@@ -162,29 +292,49 @@ impl WithSimd for Elimination<'_> {
 
     #[inline(always)]
     fn with_simd<S: Simd>(self, simd: S) -> bool {
-        let front = self.0;
-        let (rows, pivots) = (front.rows(), front.pivots);
-        for first in (0..pivots).step_by(BLOCK) {
-            let end = pivots.min(first + BLOCK);
-            let (done, later) = front.panel.split_at_mut(end * rows);
-            let block = &mut done[first * rows..];
-            if !eliminate_block(simd, block, rows, first) {
+        let Front { pivots, below, .. } = *self.0;
+        let rows = self.0.rows();
+        let Front { panel, rest, .. } = self.0;
+        let (top, side) = (padded(pivots), padded(below));
+        for start in (0..pivots).step_by(SLAB) {
+            let end = pivots.min(start + SLAB);
+            let (done, later) = panel.split_at_mut(end * rows);
+            let slab = &mut done[start * rows..];
+            if !eliminate_slab(simd, slab, rows, start) {
                 return false;
             }
+            let source = Source { values: slab, rows };
             for (columns, first) in later.chunks_mut(TILE * rows).zip((end..).step_by(TILE)) {
-                subtract(simd, Source { values: block, rows }, first, Target { columns, rows, first });
+                subtract(simd, source, first, Target { columns, rows, first });
             }
-        }
-        let (top, side) = (padded(pivots), padded(front.below));
-        let source = Source { values: &front.panel, rows };
-        let mut rest = &mut front.rest[..];
-        for first in (0..side).step_by(TILE) {
-            let (columns, later) = rest.split_at_mut(TILE * (side - first));
-            subtract(simd, source, top + first, Target { columns, rows: side - first, first: 0 });
-            rest = later;
+            let mut rest = &mut rest[..];
+            for first in (0..side).step_by(TILE) {
+                let (columns, later) = rest.split_at_mut(TILE * (side - first));
+                subtract(simd, source, top + first, Target { columns, rows: side - first, first: 0 });
+                rest = later;
+            }
         }
         true
     }
+}
+
+/// Eliminates at most [`SLAB`] columns whose first pivot is in row `start`.
+#[inline(always)]
+fn eliminate_slab<S: Simd>(simd: S, slab: &mut [f64], rows: usize, start: usize) -> bool {
+    let pivots = slab.len() / rows;
+    for first in (0..pivots).step_by(BLOCK) {
+        let end = pivots.min(first + BLOCK);
+        let (done, later) = slab.split_at_mut(end * rows);
+        let block = &mut done[first * rows..];
+        if !eliminate_block(simd, block, rows, start + first) {
+            return false;
+        }
+        let source = Source { values: block, rows };
+        for (columns, first) in later.chunks_mut(TILE * rows).zip((start + end..).step_by(TILE)) {
+            subtract(simd, source, first, Target { columns, rows, first });
+        }
+    }
+    true
 }
 
 /// Eliminates a block of at most [`BLOCK`] columns whose first pivot is in row `first`.

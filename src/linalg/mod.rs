@@ -4,6 +4,8 @@
 pub mod cholesky;
 pub mod conjugate_gradient;
 pub mod envelope;
+#[cfg(feature = "solvers")]
+mod front;
 pub mod jacobi;
 pub mod polar;
 #[cfg(feature = "solvers")]
@@ -11,3 +13,5 @@ pub mod principal;
 pub mod rigid_fit;
 #[cfg(feature = "solvers")]
 pub mod symmetric;
+#[cfg(feature = "solvers")]
+mod tree;

@@ -7,16 +7,13 @@
 //! found once; nodes leave out what is not in the set. What is left below a node is kept, so that after a change of the
 //! set only the nodes from the change up to the root are done again.
 
-mod front;
-mod tree;
-
 use super::cholesky::NotPositiveDefinite;
+use super::front::{Front, padded};
 use super::symmetric::Symmetric;
-use front::{Front, padded};
+use super::tree::NONE;
+pub use super::tree::Tree;
 use pulp::{Arch, Simd, WithSimd};
 use std::sync::Arc;
-use tree::NONE;
-pub use tree::Tree;
 
 /// The factor of a matrix restricted to a set of unknowns.
 #[derive(Clone, Debug, Default)]
@@ -149,14 +146,7 @@ impl Principal {
         let top = padded(columns.len()) as u32;
         let places = (0..).zip(&*columns).chain((top..).zip(&*rows));
         places.for_each(|(place, &v)| room.place[v as usize] = place);
-        let height = front.rows();
-        for (column, &v) in front.panel.chunks_exact_mut(height).zip(&*columns) {
-            for (u, value) in matrix.row_from_diagonal(v as usize) {
-                if let Some(entry) = column.get_mut(room.place[u] as usize) {
-                    *entry = value;
-                }
-            }
-        }
+        front.set(matrix, columns.iter().copied(), &room.place);
         if below {
             self.find_below(tree, node, &mut room.below);
             let parts = room.below.iter().filter_map(|&child| self.parts[child as usize].as_deref());
@@ -258,25 +248,7 @@ impl Part {
     fn add_to(&self, front: &mut Front, place: &[u32], places: &mut Vec<usize>) {
         places.clear();
         places.extend(self.rows.iter().map(|&v| place[v as usize] as usize));
-        let (top, rows) = (padded(front.pivots), front.rows());
-        for (j, &to) in places.iter().enumerate() {
-            let (left, first) = self.front.rest_column(j);
-            let left = &self.front.rest[left][j - first..];
-            let (column, from) = match to {
-                to if to < front.pivots => (&mut front.panel[to * rows..(to + 1) * rows], 0),
-                to if to < rows => {
-                    let (column, first) = front.rest_column(to - top);
-                    (&mut front.rest[column], top + first)
-                }
-                // It has left the set.
-                _ => continue,
-            };
-            for (place, value) in places[j..].iter().zip(left) {
-                if let Some(entry) = column.get_mut(place.wrapping_sub(from)) {
-                    *entry += value;
-                }
-            }
-        }
+        front.add(&self.front, places);
     }
 }
 

@@ -25,6 +25,38 @@ impl Symmetric {
         Self { starts, columns, values, diagonals }
     }
 
+    /// From one triangle, with the unknowns in another order: `places` is where each goes.
+    pub fn permuted(upper: &Upper, places: &[u32]) -> Self {
+        let n = places.len();
+        let mut starts = vec![0; n + 1];
+        let entries = || {
+            let column = |c: usize| upper.starts[c] as usize..upper.starts[c + 1] as usize;
+            (0..n).flat_map(move |c| column(c).map(move |at| (places[c], places[upper.rows[at] as usize], at)))
+        };
+        let mirrored =
+            |(a, b, at): (u32, u32, usize)| [(a, b, at), (b, a, at)].into_iter().take(1 + usize::from(a != b));
+        entries().flat_map(mirrored).for_each(|(row, _, _)| starts[row as usize + 1] += 1);
+        (0..n).for_each(|row| starts[row + 1] += starts[row]);
+        let count = starts[n] as usize;
+        let place = |next: &mut [u32], row: u32| {
+            next[row as usize] += 1;
+            next[row as usize] as usize - 1
+        };
+        // Put into rows twice: what is taken row by row the second time comes to each of them in order.
+        let (mut next, mut loose) = (starts.clone(), vec![(0, 0); count]);
+        for (row, column, at) in entries().flat_map(mirrored) {
+            loose[place(&mut next, row)] = (column, at);
+        }
+        let (mut next, mut columns, mut values) = (starts.clone(), vec![0; count], vec![0.0; count]);
+        for row in 0..n as u32 {
+            for &(column, at) in &loose[starts[row as usize] as usize..starts[row as usize + 1] as usize] {
+                let to = place(&mut next, column);
+                (columns[to], values[to]) = (row, upper.values[at]);
+            }
+        }
+        Self::new(starts, columns, values)
+    }
+
     /// The entries of a row: column numbers, rising, and values.
     #[inline]
     pub fn row(&self, row: usize) -> impl Iterator<Item = (usize, f64)> {
