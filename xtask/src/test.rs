@@ -152,8 +152,9 @@ fn test_wasm() -> Result<Tally> {
     shell::run(shell::cargo(["build", "--package", "wasm-test-runner"]))?;
     let mut cargo = shell::cargo(["test", "--no-fail-fast", "--target", WASM, "--no-default-features"]);
     cargo.args(["--features", "worker", "--test", "wasm_page", "--test", "wasm_worker"]);
-    // These cases are small: they run for less time than optimising them takes.
-    cargo.args(["--config", "profile.dev.package.sinew.opt-level=0"]);
+    // These cases are small: they run for less time than optimising them takes, and than making them ready for the browser
+    // takes with the numbers of all lines.
+    cargo.args(["--config", "profile.dev.package.sinew.opt-level=0", "--config", "profile.dev.debug=false"]);
     cargo.env("CHROMEDRIVER", setup::browser()?.driver).env("WASM_BINDGEN_TEST_TIMEOUT", "120");
     count(cargo)
 }
