@@ -3,7 +3,7 @@
 
 use super::front::{Front, padded};
 use super::symmetric::Symmetric;
-use super::tree::Tree;
+use super::tree::{Merging, Tree};
 use pulp::{Arch, Simd, WithSimd};
 
 /// The matrix has no Cholesky factor: it is not positive definite within rounding, or has entries that are no numbers.
@@ -69,7 +69,7 @@ impl Cholesky {
             order.iter().zip(0..).for_each(|(&unknown, place)| places[unknown as usize] = place);
         }
         let permuted = Symmetric::permuted(matrix, &places);
-        let tree = Tree::new(&permuted);
+        let tree = Tree::new(&permuted, Merging::Little);
         let fronts = (0..tree.size()).map(|_| Front::default()).collect();
         let mut factor = Self { places, tree, fronts };
         factor.eliminate(&permuted)?;
@@ -91,12 +91,11 @@ impl Cholesky {
         // Of each unknown, its row in the front at hand. What is in a front is in the one above as well, so that none of
         // those left from earlier fronts is asked for.
         let mut row = vec![0; matrix.size()];
-        let (mut of_child, mut spare): (Vec<usize>, Vec<Vec<f64>>) = (Vec::new(), Vec::new());
+        let mut of_child = Vec::new();
         for node in 0..tree.size() {
             let (below, here) = self.fronts.split_at_mut(node);
             let (front, node) = (&mut here[0], node as u32);
             let (columns, rows) = (tree.columns(node), tree.rows(node));
-            front.rest = spare.pop().unwrap_or_default();
             front.reset(columns.len(), rows.len());
             let places = (0..).zip(columns.clone()).chain((padded(columns.len()) as u32..).zip(rows.iter().copied()));
             places.for_each(|(place, v)| row[v as usize] = place);
@@ -106,7 +105,7 @@ impl Cholesky {
                 of_child.extend(tree.rows(child).iter().map(|&v| row[v as usize] as usize));
                 let child = &mut below[child as usize];
                 front.add(child, &of_child);
-                spare.push(std::mem::take(&mut child.rest));
+                child.rest = Vec::new();
             }
             if !front.eliminate() {
                 return Err(NotPositiveDefinite);

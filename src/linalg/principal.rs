@@ -11,7 +11,7 @@ use super::cholesky::NotPositiveDefinite;
 use super::front::{Front, padded};
 use super::symmetric::Symmetric;
 use super::tree::NONE;
-pub use super::tree::Tree;
+pub use super::tree::{Merging, Tree};
 use pulp::{Arch, Simd, WithSimd};
 use std::sync::Arc;
 
@@ -300,7 +300,7 @@ mod tests {
     #[test]
     fn solutions_solve_while_the_set_changes() {
         let matrix = sheet(20);
-        let tree = Tree::new(&matrix);
+        let tree = Tree::new(&matrix, Merging::Much);
         let mut room = Room::new(&matrix, &tree);
         let mut factor = Principal::default();
         let member = |v: u32, round: u32| match round {
@@ -325,7 +325,7 @@ mod tests {
     #[test]
     fn a_changed_factor_is_the_same_as_a_new_one() {
         let matrix = sheet(15);
-        let tree = Tree::new(&matrix);
+        let tree = Tree::new(&matrix, Merging::Much);
         let mut room = Room::new(&matrix, &tree);
         let first: Vec<u32> = (0..150).collect();
         let second: Vec<u32> = (0..225).filter(|v| v % 11 != 0).collect();
@@ -344,7 +344,7 @@ mod tests {
     #[test]
     fn what_is_not_positive_definite_is_refused() {
         let matrix = Symmetric::new(vec![0, 2, 4], vec![0, 1, 0, 1], vec![1.0, 2.0, 2.0, 1.0]);
-        let tree = Tree::new(&matrix);
+        let tree = Tree::new(&matrix, Merging::Much);
         let mut room = Room::new(&matrix, &tree);
         let mut factor = Principal::default();
         assert!(factor.change(&matrix, &tree, &[0, 1], &mut room).is_err());

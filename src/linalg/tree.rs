@@ -10,8 +10,24 @@ use std::ops::Range;
 /// No node, no column.
 pub const NONE: u32 = u32::MAX;
 
-/// Nodes are merged up to so many columns if no more than such a share of their entries are zeros.
-const MERGED: [(usize, f64); 4] = [(16, 1.0), (32, 0.7), (64, 0.4), (usize::MAX, 0.12)];
+/// How readily nodes become one, at the price of zeros among their entries.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Merging {
+    /// For factors that are kept: three quarters of the entries, in about the same time.
+    Little,
+    /// For parts that are factored again and again, and are small.
+    Much,
+}
+
+impl Merging {
+    /// Up to so many columns are one node if no more than such a share of its entries are zeros.
+    fn limits(self) -> &'static [(usize, f64)] {
+        match self {
+            Self::Little => &[(4, 1.0), (8, 0.5), (16, 0.3), (64, 0.15), (usize::MAX, 0.05)],
+            Self::Much => &[(16, 1.0), (32, 0.7), (64, 0.4), (usize::MAX, 0.12)],
+        }
+    }
+}
 
 /// The tree of a symmetric matrix whose unknowns are eliminated in the order of their numbers. Nodes are runs of columns;
 /// children come before their parents.
@@ -30,10 +46,10 @@ pub struct Tree {
 
 impl Tree {
     /// The tree of a matrix with a full diagonal.
-    pub fn new(matrix: &Symmetric) -> Self {
+    pub fn new(matrix: &Symmetric, merging: Merging) -> Self {
         let above = parents(matrix);
         let counts = counts(matrix, &above);
-        let starts = nodes(&above, &counts);
+        let starts = nodes(&above, &counts, merging.limits());
         let n = matrix.size();
         let count = starts.len() - 1;
         let mut node = vec![0; n];
@@ -165,7 +181,7 @@ struct Run {
 }
 
 /// Where nodes begin, and the number of columns.
-fn nodes(parent: &[u32], counts: &[u32]) -> Vec<u32> {
+fn nodes(parent: &[u32], counts: &[u32], limits: &[(usize, f64)]) -> Vec<u32> {
     let n = parent.len();
     let mut runs: Vec<Run> = Vec::new();
     let mut first = 0;
@@ -177,7 +193,7 @@ fn nodes(parent: &[u32], counts: &[u32]) -> Vec<u32> {
         let mut run = Run { first: first as u32, below: counts[end - 1] as usize, zeros: 0.0 };
         while let Some(last) = runs.last() {
             let under = parent[run.first as usize - 1];
-            let both = if (under as usize) < end { merged(last, &run, end) } else { None };
+            let both = if (under as usize) < end { merged(last, &run, end, limits) } else { None };
             let Some(both) = both else { break };
             runs.pop();
             run = both;
@@ -188,13 +204,13 @@ fn nodes(parent: &[u32], counts: &[u32]) -> Vec<u32> {
     runs.iter().map(|run| run.first).chain([n as u32]).collect()
 }
 
-/// A run and the one before it as one, if that is worth it.
-fn merged(before: &Run, run: &Run, end: usize) -> Option<Run> {
+/// A run and the one before it as one, if the limits allow it.
+fn merged(before: &Run, run: &Run, end: usize, limits: &[(usize, f64)]) -> Option<Run> {
     let (own, theirs) = (end - run.first as usize, (run.first - before.first) as usize);
     let zeros = before.zeros + run.zeros + (theirs * (own + run.below - before.below)) as f64;
     let columns = own + theirs;
     let share = zeros / (columns * (columns + 1) / 2 + columns * run.below) as f64;
-    let allowed = MERGED.iter().find(|(most, _)| columns <= *most).map_or(0.0, |allowed| allowed.1);
+    let allowed = limits.iter().find(|(most, _)| columns <= *most).map_or(0.0, |allowed| allowed.1);
     (share <= allowed).then_some(Run { first: before.first, below: run.below, zeros })
 }
 

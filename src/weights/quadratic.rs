@@ -1,6 +1,6 @@
 //! The energy wᵀ Q w with Q = L M⁻¹ L: the integral of the squared Laplacian.
 
-use crate::linalg::principal::Tree;
+use crate::linalg::principal::{Merging, Tree};
 use crate::linalg::symmetric::Symmetric;
 use crate::mesh::laplacian::Laplacian;
 
@@ -33,7 +33,7 @@ impl Quadratic {
         let laplacian = stiffness(laplacian, n);
         let matrix = square(&laplacian, &inverse_mass);
         let diagonal = (0..n).map(|v| matrix.diagonal(v)).collect();
-        let tree = Tree::new(&matrix);
+        let tree = Tree::new(&matrix, Merging::Much);
         Self { laplacian, inverse_mass, matrix, diagonal, tree }
     }
 

@@ -37,9 +37,9 @@ pub struct Solver {
     /// What the anchored vertex is held with.
     hold: f64,
     pins: Vec<u32>,
-    /// For each pin, where all go when it goes by 1 and nothing else is asked for; and the factor of what they do to each
-    /// other.
-    answers: Vec<Vec<f64>>,
+    /// For each pin, where all go when it is drawn with a force of 1 and nothing else is asked for, one after the other; and
+    /// the factor of what they do to each other.
+    answers: Vec<f64>,
     between: Option<Cholesky>,
 }
 
@@ -91,17 +91,17 @@ impl Solver {
     }
 
     fn pin(&mut self) -> Result<(), NotPositiveDefinite> {
-        for &pin in &self.pins {
-            let mut answer = vec![0.0; self.count];
-            answer[pin as usize] = 1.0;
-            self.factor.solve(&mut answer);
-            self.answers.push(answer);
+        if self.pins.is_empty() {
+            return Ok(());
         }
+        self.answers = vec![0.0; self.count * self.pins.len()];
+        self.answers.chunks_exact_mut(self.count).zip(&self.pins).for_each(|(answer, &pin)| answer[pin as usize] = 1.0);
+        self.factor.solve(&mut self.answers);
         let mut between = Vec::new();
-        for (i, answer) in (0_u32..).zip(&self.answers) {
+        for (i, answer) in (0_u32..).zip(self.answers.chunks_exact(self.count)) {
             between.extend(self.pins[..=i as usize].iter().zip(0_u32..).map(|(&p, j)| (i, j, answer[p as usize])));
         }
-        self.between = if self.pins.is_empty() { None } else { Some(Cholesky::new(self.pins.len(), &between)?) };
+        self.between = Some(Cholesky::new(self.pins.len(), &between)?);
         Ok(())
     }
 
@@ -150,7 +150,7 @@ impl Solver {
         let mut forces = columns(&[missing]);
         between.solve(&mut forces);
         let n = self.pins.len();
-        for (i, answer) in self.answers.iter().enumerate() {
+        for (i, answer) in self.answers.chunks_exact(self.count).enumerate() {
             let force = DVec3::new(forces[i], forces[n + i], forces[2 * n + i]);
             points.iter_mut().zip(answer).for_each(|(point, &share)| *point += share * force);
         }
