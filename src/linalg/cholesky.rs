@@ -91,11 +91,13 @@ impl Cholesky {
         // Of each unknown, its row in the front at hand. What is in a front is in the one above as well, so that none of
         // those left from earlier fronts is asked for.
         let mut row = vec![0; matrix.size()];
-        let mut of_child = Vec::new();
+        // What a node leaves lies in memory that one below had before.
+        let (mut of_child, mut spare): (Vec<usize>, Vec<Vec<f64>>) = (Vec::new(), Vec::new());
         for node in 0..tree.size() {
             let (below, here) = self.fronts.split_at_mut(node);
             let (front, node) = (&mut here[0], node as u32);
             let (columns, rows) = (tree.columns(node), tree.rows(node));
+            front.rest = spare.pop().unwrap_or_default();
             front.reset(columns.len(), rows.len());
             let places = (0..).zip(columns.clone()).chain((padded(columns.len()) as u32..).zip(rows.iter().copied()));
             places.for_each(|(place, v)| row[v as usize] = place);
@@ -105,7 +107,7 @@ impl Cholesky {
                 of_child.extend(tree.rows(child).iter().map(|&v| row[v as usize] as usize));
                 let child = &mut below[child as usize];
                 front.add(child, &of_child);
-                child.rest = Vec::new();
+                spare.push(std::mem::take(&mut child.rest));
             }
             if !front.eliminate() {
                 return Err(NotPositiveDefinite);
