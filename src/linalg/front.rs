@@ -19,6 +19,18 @@ pub fn padded(count: usize) -> usize {
     count.next_multiple_of(TILE)
 }
 
+/// Solves with the columns of a front from `first` on: [`TILE`] of them, or what is left of the pivots.
+macro_rules! solve_block {
+    ($front:ident, $solve:ident, $simd:ident, $x:ident, $first:ident) => {
+        match $front.pivots - $first {
+            1 => $solve($simd, $front.block::<1>($first), $x, $first),
+            2 => $solve($simd, $front.block::<2>($first), $x, $first),
+            3 => $solve($simd, $front.block::<3>($first), $x, $first),
+            _ => $solve($simd, $front.block::<TILE>($first), $x, $first),
+        }
+    };
+}
+
 /// A dense symmetric matrix of which some columns are to be eliminated.
 #[derive(Debug, Default)]
 pub struct Front {
@@ -108,12 +120,7 @@ impl Front {
     #[inline(always)]
     pub fn forward<S: Simd>(&self, simd: S, x: &mut [f64]) {
         for first in (0..self.pivots).step_by(TILE) {
-            match self.pivots - first {
-                1 => forward(simd, self.block::<1>(first), x, first),
-                2 => forward(simd, self.block::<2>(first), x, first),
-                3 => forward(simd, self.block::<3>(first), x, first),
-                _ => forward(simd, self.block::<TILE>(first), x, first),
-            }
+            solve_block!(self, forward, simd, x, first);
         }
     }
 
@@ -121,12 +128,7 @@ impl Front {
     #[inline(always)]
     pub fn backward<S: Simd>(&self, simd: S, x: &mut [f64]) {
         for first in (0..self.pivots).step_by(TILE).rev() {
-            match self.pivots - first {
-                1 => backward(simd, self.block::<1>(first), x, first),
-                2 => backward(simd, self.block::<2>(first), x, first),
-                3 => backward(simd, self.block::<3>(first), x, first),
-                _ => backward(simd, self.block::<TILE>(first), x, first),
-            }
+            solve_block!(self, backward, simd, x, first);
         }
     }
 
@@ -134,12 +136,7 @@ impl Front {
     #[inline(always)]
     pub fn forward_together<S: Simd, const V: usize>(&self, simd: S, x: &mut [[S::f64s; V]]) {
         for first in (0..self.pivots).step_by(TILE) {
-            match self.pivots - first {
-                1 => forward_together(simd, self.block::<1>(first), x, first),
-                2 => forward_together(simd, self.block::<2>(first), x, first),
-                3 => forward_together(simd, self.block::<3>(first), x, first),
-                _ => forward_together(simd, self.block::<TILE>(first), x, first),
-            }
+            solve_block!(self, forward_together, simd, x, first);
         }
     }
 
@@ -147,12 +144,7 @@ impl Front {
     #[inline(always)]
     pub fn backward_together<S: Simd, const V: usize>(&self, simd: S, x: &mut [[S::f64s; V]]) {
         for first in (0..self.pivots).step_by(TILE).rev() {
-            match self.pivots - first {
-                1 => backward_together(simd, self.block::<1>(first), x, first),
-                2 => backward_together(simd, self.block::<2>(first), x, first),
-                3 => backward_together(simd, self.block::<3>(first), x, first),
-                _ => backward_together(simd, self.block::<TILE>(first), x, first),
-            }
+            solve_block!(self, backward_together, simd, x, first);
         }
     }
 

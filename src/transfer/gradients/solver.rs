@@ -85,11 +85,6 @@ impl Solver {
         Ok(solver)
     }
 
-    /// The number of stored entries of the factor.
-    pub fn entries(&self) -> usize {
-        self.factor.entries()
-    }
-
     fn pin(&mut self) -> Result<(), NotPositiveDefinite> {
         if self.pins.is_empty() {
             return Ok(());
