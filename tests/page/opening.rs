@@ -51,15 +51,7 @@ fn opens_on_a_painted_creature(backend: Backend, screen: Screen) {
     assert!(canvas.colours() > 200, "the canvas has only {} colours", canvas.colours());
     assert!(canvas.hues(0.001) >= 3, "the canvas has only {} hues", canvas.hues(0.001));
     assert_eq!(page.state()["playing"], true);
-    let mut changed = 0.0;
-    for _ in 0..6 {
-        page.rest(0.4);
-        changed = page.picture_of("canvas", "moving").difference(&canvas, 8);
-        if changed > 0.002 {
-            return;
-        }
-    }
-    panic!("only {:.3} % of the canvas changed", 100.0 * changed);
+    page.wait_until_changed("canvas", "moving", &canvas, 0.002);
 }
 
 #[test]

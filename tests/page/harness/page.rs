@@ -310,6 +310,22 @@ impl Page {
         self.screenshot(name).cut(left, top, width, height)
     }
 
+    /// Looks at an element until another share of it, from 0 to 1, is to be seen than in an earlier picture of it: a busy
+    /// machine shows a frame some time after it was drawn.
+    pub fn wait_until_changed(&mut self, selector: &str, name: &str, before: &Picture, share: f64) {
+        let deadline = clock::seconds() + 10.0;
+        loop {
+            let changed = self.picture_of(selector, name).difference(before, 8);
+            if changed > share {
+                return;
+            }
+            if clock::seconds() > deadline {
+                self.fail(&format!("{name}: only {:.3} % of {selector} changed", 100.0 * changed));
+            }
+            self.rest(0.4);
+        }
+    }
+
     /// Lets the problems that contain some words pass.
     pub fn expect_problem(&mut self, words: &str) {
         self.expected.push(words.to_owned());
