@@ -3,7 +3,8 @@
  *
  * Whatever is shown is written down here first and then handed to the Viewport, so that a lost device costs a
  * moment and nothing else: a fresh canvas, a fresh Viewport, the same state. Without any GPU there is no Viewport,
- * and everything but the picture still works. A page may have several pictures, each with a device of its own.
+ * and everything but the picture still works. A page may have several pictures, each with a device of its own; they
+ * are drawn in the same frames, or where drawing is slow they would show different moments of one motion.
  */
 import { h } from './dom.js';
 import { Pace } from './pace.js';
@@ -30,8 +31,11 @@ let following = false;
 const SETTLES = 350;
 const CALM = matchMedia('(prefers-reduced-motion: reduce)');
 
-/** The wasm is started once for all pictures. @type {Promise<any>|null} */
+/** The wasm; it and the frames are started once for all pictures. @type {Promise<any>|null} */
 let bundle = null;
+
+/** The pictures that are drawn. @type {Set<Stage>} */
+const open = new Set();
 
 export class Stage extends EventTarget {
   /**
@@ -68,7 +72,10 @@ export class Stage extends EventTarget {
   }
 
   async #start(module) {
-    bundle ??= init({ module_or_path: module });
+    if (!bundle) {
+      bundle = init({ module_or_path: module });
+      requestAnimationFrame(Stage.#frame);
+    }
     await bundle;
     await this.#build();
     if (this.closing.signal.aborted) return;
@@ -76,11 +83,12 @@ export class Stage extends EventTarget {
     const sizes = new ResizeObserver(() => this.#resize());
     sizes.observe(this.host);
     this.#watchRatio();
+    open.add(this);
     this.closing.signal.addEventListener('abort', () => {
+      open.delete(this);
       clearInterval(watch);
       sizes.disconnect();
     });
-    requestAnimationFrame((now) => this.#frame(now));
   }
 
   /** Hears of it when the window moves to a screen with other pixels, or the visitor zooms. */
@@ -175,17 +183,26 @@ export class Stage extends EventTarget {
     this.#frameUnlessMoved();
   }
 
-  #frame(now) {
-    if (this.closing.signal.aborted) return;
-    requestAnimationFrame((later) => this.#frame(later));
+  /** Every picture hears of the time before any is drawn, and none is drawn before all can be. */
+  static #frame(now) {
+    requestAnimationFrame(Stage.#frame);
     following = true;
-    this.dispatchEvent(Object.assign(new Event('tick'), { now }));
+    for (const stage of open) stage.dispatchEvent(Object.assign(new Event('tick'), { now }));
     following = false;
-    if (!this.view || !this.visible) return;
+    const seen = [...open].filter((stage) => stage.view && stage.visible);
+    const free = seen.map((stage) => stage.#prepare(now));
+    if (free.every(Boolean)) seen.forEach((stage) => stage.#next(now));
+  }
+
+  /** @returns {boolean} whether another frame may begin */
+  #prepare(now) {
     this.#flow(now);
     const underWay = this.view.under_way();
     while (this.waiting.length > underWay) this.shown = this.waiting.shift();
-    if (!this.pace.allows(now, underWay)) return;
+    return this.pace.allows(now, underWay);
+  }
+
+  #next(now) {
     if (this.unfit) this.#resize();
     this.#settle(now);
     this.#draw(now);
