@@ -22,6 +22,8 @@ pub enum Step {
     Weights(usize),
     /// [`crate::transfer`]: the sizes are those of the source, and of the target here.
     Transfer(Sizes),
+    /// [`crate::transfer::gradients`], posed or not: the sizes are those of the source, and of the target here.
+    Faces(Sizes),
 }
 
 /// A step that would not fit.
@@ -50,6 +52,10 @@ impl Step {
                 let source = vertices.saturating_mul(1500 + 60 * poses);
                 source.saturating_add((target.vertices as u64).saturating_mul(3500))
             }
+            Self::Faces(target) => {
+                let source = vertices.saturating_mul(2500 + 60 * poses);
+                source.saturating_add((target.vertices as u64).saturating_mul(9000 + 60 * poses))
+            }
         }
     }
 
@@ -58,7 +64,7 @@ impl Step {
             Self::Segmentation => "Finding the parts",
             Self::KeyPoints(_) => "Finding the key points",
             Self::Weights(_) => "Computing the weights",
-            Self::Transfer(_) => "Moving the target",
+            Self::Transfer(_) | Self::Faces(_) => "Moving the target",
         }
     }
 }
@@ -137,13 +143,16 @@ mod tests {
 
     #[test]
     fn what_people_open_fits() {
+        let target = sizes(100_000, 200_000, 0);
         for step in
-            [Step::Segmentation, Step::KeyPoints(30), Step::Weights(30), Step::Transfer(sizes(100_000, 200_000, 0))]
+            [Step::Segmentation, Step::KeyPoints(30), Step::Weights(30), Step::Transfer(target), Step::Faces(target)]
         {
             assert!(step.bytes(sizes(100_000, 200_000, 60)) < LIMIT, "{step:?}");
         }
         assert!(Step::Segmentation.bytes(sizes(750_000, 1_500_000, 30)) < LIMIT);
         assert!(Step::KeyPoints(30).bytes(sizes(1_000_000, 2_000_000, 24)) > LIMIT);
+        let target = sizes(400_000, 800_000, 0);
+        assert!(Step::Faces(target).bytes(sizes(400_000, 800_000, 24)) > LIMIT);
         assert!(Step::Segmentation.bytes(sizes(usize::MAX, usize::MAX, 24)) > LIMIT, "no overflow");
     }
 

@@ -2,6 +2,7 @@
 
 use super::values::{Reply, coordinates, parsed, plain, put, sentence};
 use super::{Engine, watcher};
+use crate::memory::Step;
 use crate::transfer::gradients::Mover;
 use crate::transfer::{Pair, Parameters, transfer};
 use glam::DVec3;
@@ -19,6 +20,7 @@ impl Engine {
         let mover = match self.mover.take() {
             Some((made_with, mover)) if made_with == parameters => mover,
             _ => {
+                self.room_for(Step::Faces(self.open_target()?.sizes()), self.open_sequence()?)?;
                 Mover::new(self.open_sequence()?, self.open_target()?, &parameters, &mut observer).map_err(sentence)?
             }
         };
@@ -45,9 +47,11 @@ impl Engine {
         let (source, target) = (self.open_sequence()?, self.open_target()?);
         let (pairs, mut observer) = (read_pairs(pairs), watcher(progress));
         let poses = if parameters.method.moves_vertices() {
+            self.room_for(Step::Faces(target.sizes()), source)?;
             let mover = Mover::new(source, target, &parameters, &mut observer).map_err(sentence)?;
             mover.transfer(&pairs, &mut observer).map_err(sentence)?.poses
         } else {
+            self.room_for(Step::Transfer(target.sizes()), source)?;
             transfer(source, target, &pairs, &parameters, &mut observer).map_err(sentence)?.poses(target.reference())
         };
         let reply: JsValue = Object::new().into();
