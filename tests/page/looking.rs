@@ -78,7 +78,7 @@ fn parts_and_views_on_webgl2() {
 #[test]
 #[ignore = "drives the built page in Chromium: run by `cargo xtask test`"]
 fn keys_do_what_the_sheet_says() {
-    let mut page = opened(Backend::WebGl2, Screen::Small, "");
+    let mut page = opened(Backend::WebGl2, Screen::Small, "#v1;zoo=horse;faces=3000");
     page.press(" ");
     page.wait_until("!sinew.state().playing", AT_ONCE);
     let time = page.state()["time"].as_f64().unwrap_or(-1.0);

@@ -32,7 +32,7 @@ fn nothing_clashes(page: &mut Page, when: &str) {
 #[test]
 #[ignore = "drives the built page in Chromium: run by `cargo xtask test`"]
 fn everything_has_its_place_on_a_phone() {
-    let mut page = opened(Backend::WebGl2, Screen::Phone, "");
+    let mut page = opened(Backend::WebGl2, Screen::Phone, "#v1;zoo=horse;faces=3000");
     assert_eq!(page.state()["panel"], false, "the panel waits until it is asked for");
     nothing_clashes(&mut page, "with the panel away");
     for view in ["features", "distance", "parts"] {
