@@ -8,6 +8,7 @@
 use super::alignment::Alignment;
 use super::kd_tree::KdTree;
 use super::rig::Rig;
+use super::rig::blends::{Blend, blends};
 use super::surface::Surface;
 use glam::{DAffine3, DVec3};
 use nalgebra::{Cholesky, DMatrix, Dyn};
@@ -43,10 +44,10 @@ type Rows = [Vec<(u32, f64)>];
 impl Joints {
     /// Finds the links; `rows` are the weights of the same bones on the target.
     pub fn new(source: &Surface, rig: &Rig, target: &Surface, rows: &Rows, alignment: Alignment) -> Self {
-        let (here, there) = (blends(source, &rig.rows), blends(target, rows));
+        let there = blends(target, rows, rig.bones);
         let mut links: Vec<Link> = Vec::new();
         let mut bones = vec![(DVec3::ZERO, DVec3::ZERO, 0.0); rig.bones];
-        for (&(i, j), a) in &here {
+        for (&(i, j), a) in &rig.blends {
             let other = there.get(&(i, j));
             if i == j {
                 let target = other.map_or(alignment.apply(a.middle()), Blend::middle);
@@ -104,35 +105,6 @@ impl Joints {
     }
 }
 
-/// The part of a surface that two bones share.
-#[derive(Clone, Copy, Debug, Default)]
-struct Blend {
-    weight: f64,
-    sum: DVec3,
-}
-
-impl Blend {
-    fn middle(&self) -> DVec3 {
-        self.sum / self.weight
-    }
-}
-
-/// Blends by bones, the lower number first; a bone with itself is where the bone is.
-fn blends(surface: &Surface, rows: &Rows) -> BTreeMap<(u32, u32), Blend> {
-    let mut blends: BTreeMap<(u32, u32), Blend> = BTreeMap::new();
-    for ((row, &m), &p) in rows.iter().zip(&surface.mass).zip(&surface.positions) {
-        for &(i, a) in row {
-            for &(j, b) in row.iter().filter(|other| other.0 >= i) {
-                let blend = blends.entry((i, j)).or_default();
-                blend.weight += m * a * b;
-                blend.sum += p * (m * a * b);
-            }
-        }
-    }
-    blends.retain(|_, blend| blend.weight > 1e-12);
-    blends
-}
-
 /// Links groups of bones that blend with no other group (pieces of the mesh, such as eyes) to what is nearest on the
 /// source: their middle then moves with that.
 fn join_loose(source: &Surface, rig: &Rig, bones: &[(DVec3, DVec3, f64)], links: &mut Vec<Link>) {
@@ -142,8 +114,8 @@ fn join_loose(source: &Surface, rig: &Rig, bones: &[(DVec3, DVec3, f64)], links:
         rig.rows.iter().map(|row| row.iter().max_by(|a, b| a.1.total_cmp(&b.1)).map_or(0, |entry| entry.0)).collect();
     let mut group: Vec<usize> = (0..rig.bones).collect();
     links.iter().for_each(|link| join(&mut group, link.bones));
-    let points: Vec<[f64; 3]> = source.positions.iter().map(DVec3::to_array).collect();
-    let tree = KdTree::new(&points);
+    // Most rigs are joined already, and need no tree.
+    let mut tree: Option<KdTree<3>> = None;
     loop {
         let mut members: BTreeMap<usize, Vec<u32>> = BTreeMap::new();
         for (v, &bone) in main.iter().enumerate() {
@@ -155,8 +127,10 @@ fn join_loose(source: &Surface, rig: &Rig, bones: &[(DVec3, DVec3, f64)], links:
         // The smallest group first: an eye joins the head, not the head the eye.
         let Some((own, vertices)) = members.iter().min_by_key(|(root, list)| (list.len(), **root)) else { return };
         let elsewhere = |u: u32| group[main[u as usize] as usize] != *own;
+        let tree =
+            tree.get_or_insert_with(|| KdTree::new(&source.positions.iter().map(DVec3::to_array).collect::<Vec<_>>()));
         let found = vertices.iter().step_by(vertices.len().div_ceil(ASKED)).filter_map(|&v| {
-            let u = tree.nearest(&points[v as usize], elsewhere)?;
+            let u = tree.nearest(&source.positions[v as usize].to_array(), elsewhere)?;
             Some((source.positions[v as usize].distance_squared(source.positions[u as usize]), v, u))
         });
         let Some((_, v, u)) = found.min_by(|a, b| a.0.total_cmp(&b.0)) else { return };

@@ -1,4 +1,10 @@
 //! Nearest points among many, in any small number of dimensions.
+//!
+//! A part of the tree is left out if its box is too far away; how far that is, is kept up to date from level to level as in
+//! Sunil Arya and David Mount, *Algorithms for fast vector quantization*, DCC 1993.
+
+/// So few points are compared one by one.
+const FEW: usize = 8;
 
 /// A balanced k-d tree over points, laid out in place.
 #[derive(Clone, Debug)]
@@ -13,7 +19,7 @@ impl<const D: usize> KdTree<D> {
         let mut numbers: Vec<u32> = (0..points.len() as u32).collect();
         let mut stack = vec![(0, points.len(), 0)];
         while let Some((from, to, axis)) = stack.pop() {
-            if to - from < 2 {
+            if to - from <= FEW {
                 continue;
             }
             let middle = (from + to) / 2;
@@ -28,29 +34,53 @@ impl<const D: usize> KdTree<D> {
 
     /// The number of the nearest point that is `wanted`; `None` if there is none.
     pub fn nearest(&self, to: &[f64; D], wanted: impl Fn(u32) -> bool) -> Option<u32> {
-        let (mut best, mut found) = (f64::INFINITY, None);
-        // At most one entry waits for each level of the tree.
-        let mut stack = Vec::with_capacity(40);
-        stack.push((0, self.points.len(), 0, 0.0));
-        while let Some((from, end, axis, gap)) = stack.pop() {
-            if from >= end || gap >= best {
-                continue;
-            }
-            let middle = (from + end) / 2;
-            let point = &self.points[middle];
-            let distance: f64 = point.iter().zip(to).map(|(a, b)| (a - b) * (a - b)).sum();
-            if distance < best && wanted(self.numbers[middle]) {
-                best = distance;
-                found = Some(self.numbers[middle]);
-            }
-            let side = to[axis] - point[axis];
-            let next = (axis + 1) % D;
-            let (low, high) = ((from, middle), (middle + 1, end));
-            let (near, far) = if side < 0.0 { (low, high) } else { (high, low) };
-            stack.push((far.0, far.1, next, side * side));
-            stack.push((near.0, near.1, next, gap));
+        let mut search = Search { tree: self, to, wanted, apart: [0.0; D], best: f64::INFINITY, found: None };
+        search.part(0, self.points.len(), 0, 0.0);
+        search.found
+    }
+}
+
+/// A search under way.
+struct Search<'a, const D: usize, W> {
+    tree: &'a KdTree<D>,
+    to: &'a [f64; D],
+    wanted: W,
+    /// How far the box of the part is away along each axis.
+    apart: [f64; D],
+    /// The squared distance of what is found.
+    best: f64,
+    found: Option<u32>,
+}
+
+impl<const D: usize, W: Fn(u32) -> bool> Search<'_, D, W> {
+    /// Searches a part of the tree, whose box is away by the square root of `gap`.
+    fn part(&mut self, from: usize, end: usize, axis: usize, gap: f64) {
+        if end - from <= FEW {
+            return (from..end).for_each(|i| self.compare(i));
         }
-        found
+        let middle = (from + end) / 2;
+        let side = self.to[axis] - self.tree.points[middle][axis];
+        let next = (axis + 1) % D;
+        let (low, high) = ((from, middle), (middle + 1, end));
+        let (near, far) = if side < 0.0 { (low, high) } else { (high, low) };
+        self.part(near.0, near.1, next, gap);
+        self.compare(middle);
+        let before = self.apart[axis];
+        let gap = gap - before * before + side * side;
+        if gap < self.best {
+            self.apart[axis] = side;
+            self.part(far.0, far.1, next, gap);
+            self.apart[axis] = before;
+        }
+    }
+
+    #[inline]
+    fn compare(&mut self, i: usize) {
+        let distance: f64 = self.tree.points[i].iter().zip(self.to).map(|(a, b)| (a - b) * (a - b)).sum();
+        if distance < self.best && (self.wanted)(self.tree.numbers[i]) {
+            self.best = distance;
+            self.found = Some(self.tree.numbers[i]);
+        }
     }
 }
 

@@ -5,7 +5,7 @@
 //! until they do not.
 
 use super::rig::blend;
-use super::rig::weights::averaged_row;
+use super::rig::weights::Averager;
 use super::surface::Surface;
 use glam::{DAffine3, DVec3};
 use std::cmp::Reverse;
@@ -79,6 +79,7 @@ pub fn close(surface: &Surface, rows: &mut [Row], poses: &[&[DAffine3]], allowed
     let mut moved: Vec<Vec<DVec3>> = rows.iter().enumerate().map(|(v, row)| at(v, row)).collect();
     let mut suspects: Vec<(usize, usize)> = edges(surface).collect();
     let averages = (AVERAGES * rows.len()).div_ceil(AVERAGED).clamp(AVERAGES, MOST_AVERAGES);
+    let mut averager = Averager::default();
     for _ in 0..ROUNDS {
         let mut torn: Vec<(f64, u32)> = Vec::new();
         for &(a, b) in &suspects {
@@ -95,7 +96,7 @@ pub fn close(surface: &Surface, rows: &mut [Row], poses: &[&[DAffine3]], allowed
         let region = within(surface, &torn);
         for _ in 0..averages {
             let next: Vec<(u32, Row)> =
-                region.iter().map(|&v| (v, averaged_row(surface, rows, v as usize, most))).collect();
+                region.iter().map(|&v| (v, averager.row(surface, rows, v as usize, most))).collect();
             next.into_iter().for_each(|(v, row)| rows[v as usize] = row);
         }
         region.iter().for_each(|&v| moved[v as usize] = at(v as usize, &rows[v as usize]));

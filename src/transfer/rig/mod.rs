@@ -4,6 +4,7 @@
 //! 2012. Here: bones by clustering of motions, split where the motion is explained worst ([`bones`]); weights by a small
 //! problem per vertex ([`weights`]); the bones' motions again for every pose ([`motions`]).
 
+pub mod blends;
 pub mod bones;
 pub mod motions;
 pub mod weights;
@@ -18,6 +19,8 @@ pub struct Rig {
     pub bones: usize,
     /// #N rows: bones and their shares, which sum to 1.
     pub rows: Vec<Vec<(u32, f64)>>,
+    /// Where bones meet.
+    pub blends: blends::Blends,
     /// For each pose, the motion of each bone.
     pub maps: Vec<Vec<DAffine3>>,
     /// Mean distance of the skinned vertices from the true ones, over vertices (by area) and poses, in radii.
@@ -35,11 +38,12 @@ impl Rig {
         let seen: Vec<&[DVec3]> = chosen.iter().map(|&p| poses[p].as_slice()).collect();
         let found = bones::find(surface, &seen, most);
         let rows = weights::bind(surface, &seen, &found);
+        let blends = blends::blends(surface, &rows, found.count);
         let motions = motions::Motions::new(surface, &rows, found.count);
         let maps: Vec<Vec<DAffine3>> = poses.iter().map(|pose| motions.fit(surface, pose)).collect();
         let error = poses.iter().zip(&maps).map(|(pose, maps)| deviation(surface, &rows, pose, maps)).sum::<f64>()
             / poses.len().max(1) as f64;
-        Self { bones: found.count, rows, maps, error, telling: chosen, motions }
+        Self { bones: found.count, rows, blends, maps, error, telling: chosen, motions }
     }
 
     /// The motion of each bone in another pose, #N positions in the unit ball of the surface that the rig was made of.

@@ -104,27 +104,46 @@ fn simplex(gram: &[[f64; CANDIDATES]], pull: &[f64]) -> Vec<f64> {
 
 /// Rows half their own, half their neighbours' mean; at most `most` entries each.
 pub fn averaged(surface: &Surface, rows: &[Vec<(u32, f64)>], most: usize) -> Vec<Vec<(u32, f64)>> {
-    (0..rows.len()).map(|v| averaged_row(surface, rows, v, most)).collect()
+    let mut averager = Averager::default();
+    (0..rows.len()).map(|v| averager.row(surface, rows, v, most)).collect()
 }
 
-/// One of these rows.
-pub fn averaged_row(surface: &Surface, rows: &[Vec<(u32, f64)>], v: usize, most: usize) -> Vec<(u32, f64)> {
-    let beside = surface.neighbours(v);
-    let mut sum: Vec<(u32, f64)> = Vec::with_capacity(2 * most);
-    let mut add = |row: &[(u32, f64)], factor: f64| {
+/// Averages rows, one after another.
+#[derive(Default)]
+pub struct Averager {
+    sum: Vec<(u32, f64)>,
+    /// Where each bone stands in the sum, if that bone stands there.
+    places: Vec<usize>,
+}
+
+impl Averager {
+    /// One of the rows of [`averaged`].
+    pub fn row(&mut self, surface: &Surface, rows: &[Vec<(u32, f64)>], v: usize, most: usize) -> Vec<(u32, f64)> {
+        let beside = surface.neighbours(v);
+        self.sum.clear();
+        self.add(&rows[v], if beside.is_empty() { 1.0 } else { 0.5 });
+        beside.iter().for_each(|&u| self.add(&rows[u as usize], 0.5 / beside.len() as f64));
+        self.sum.retain(|s| s.1 > LEAST);
+        self.sum.sort_unstable_by(|a, b| b.1.total_cmp(&a.1).then(a.0.cmp(&b.0)));
+        self.sum.truncate(most);
+        normalised(self.sum.clone())
+    }
+
+    fn add(&mut self, row: &[(u32, f64)], factor: f64) {
         for &(bone, share) in row {
-            match sum.iter_mut().find(|s| s.0 == bone) {
-                Some(s) => s.1 += factor * share,
-                None => sum.push((bone, factor * share)),
+            if self.places.len() <= bone as usize {
+                self.places.resize(bone as usize + 1, 0);
+            }
+            let place = &mut self.places[bone as usize];
+            match self.sum.get_mut(*place) {
+                Some(s) if s.0 == bone => s.1 += factor * share,
+                _ => {
+                    *place = self.sum.len();
+                    self.sum.push((bone, factor * share));
+                }
             }
         }
-    };
-    add(&rows[v], if beside.is_empty() { 1.0 } else { 0.5 });
-    beside.iter().for_each(|&u| add(&rows[u as usize], 0.5 / beside.len() as f64));
-    sum.retain(|s| s.1 > LEAST);
-    sum.sort_by(|a, b| b.1.total_cmp(&a.1).then(a.0.cmp(&b.0)));
-    sum.truncate(most);
-    normalised(sum)
+    }
 }
 
 /// Shares that sum to 1.
