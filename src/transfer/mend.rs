@@ -5,7 +5,7 @@
 //! until they do not.
 
 use super::rig::blend;
-use super::rig::weights::Averager;
+use super::rig::weights::{Averager, Row};
 use super::surface::Surface;
 use glam::{DAffine3, DVec3};
 use std::cmp::Reverse;
@@ -26,8 +26,6 @@ const MOST_AVERAGES: usize = 12;
 const WIDTH: f64 = 1.0;
 /// Edges shorter than this, in radii, count as so long: slivers tell nothing.
 const SHORT: f64 = 2e-3;
-
-type Row = Vec<(u32, f64)>;
 
 /// Gives `lost` vertices the rows of the nearest others along the surface; pieces that are lost altogether stay.
 pub fn fill(surface: &Surface, rows: &mut [Row], lost: &[bool]) {
@@ -75,15 +73,20 @@ pub fn allowed(surface: &Surface, poses: &[&[DVec3]]) -> f64 {
 ///
 /// What comes apart by some length needs a strip in proportion to it, where all edges become a little longer.
 pub fn close(surface: &Surface, rows: &mut [Row], poses: &[&[DAffine3]], allowed: f64, most: usize) {
-    let at = |v: usize, row: &Row| poses.iter().map(|maps| blend(row, maps, surface.positions[v])).collect::<Vec<_>>();
-    let mut moved: Vec<Vec<DVec3>> = rows.iter().enumerate().map(|(v, row)| at(v, row)).collect();
+    let at = |v: usize, row: &Row, moved: &mut [DVec3]| {
+        moved.iter_mut().zip(poses).for_each(|(at, maps)| *at = blend(row, maps, surface.positions[v]));
+    };
+    // Vertex by vertex, each in all poses.
+    let mut moved = vec![DVec3::ZERO; rows.len() * poses.len()];
+    let of = |v: usize| v * poses.len()..(v + 1) * poses.len();
+    rows.iter().enumerate().for_each(|(v, row)| at(v, row, &mut moved[of(v)]));
     let mut suspects: Vec<(usize, usize)> = edges(surface).collect();
     let averages = (AVERAGES * rows.len()).div_ceil(AVERAGED).clamp(AVERAGES, MOST_AVERAGES);
-    let mut averager = Averager::default();
+    let (mut averager, mut next) = (Averager::default(), Vec::new());
     for _ in 0..ROUNDS {
         let mut torn: Vec<(f64, u32)> = Vec::new();
         for &(a, b) in &suspects {
-            let factor = longest(surface, a, b, |v, pose| moved[v][pose], poses.len());
+            let factor = longest(surface, a, b, |v, pose| moved[of(v).start + pose], poses.len());
             if factor > allowed {
                 let rest = surface.positions[a].distance(surface.positions[b]).max(SHORT);
                 let reach = WIDTH * factor * rest / (allowed - 1.0);
@@ -95,11 +98,13 @@ pub fn close(surface: &Surface, rows: &mut [Row], poses: &[&[DAffine3]], allowed
         }
         let region = within(surface, &torn);
         for _ in 0..averages {
-            let next: Vec<(u32, Row)> =
-                region.iter().map(|&v| (v, averager.row(surface, rows, v as usize, most))).collect();
-            next.into_iter().for_each(|(v, row)| rows[v as usize] = row);
+            next.resize(region.len(), Row::new());
+            for (row, &v) in next.iter_mut().zip(&region) {
+                averager.average(surface, rows, v as usize, most, row);
+            }
+            next.iter_mut().zip(&region).for_each(|(row, &v)| std::mem::swap(row, &mut rows[v as usize]));
         }
-        region.iter().for_each(|&v| moved[v as usize] = at(v as usize, &rows[v as usize]));
+        region.iter().for_each(|&v| at(v as usize, &rows[v as usize], &mut moved[of(v as usize)]));
         let around =
             |&v: &u32| surface.neighbours(v as usize).iter().map(move |&u| (v.min(u) as usize, v.max(u) as usize));
         suspects = region.iter().flat_map(around).collect();

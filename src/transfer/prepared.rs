@@ -253,9 +253,7 @@ impl Prepared {
         let lost: Vec<bool> = feet.iter().map(|foot| foot.is_none_or(|f| f.1 > LOST)).collect();
         mend::fill(&self.target, &mut rows, &lost);
         let rounds = (SMOOTHING * self.target.len()).div_ceil(SMOOTHED).clamp(2, MOST_SMOOTHING);
-        for _ in 0..rounds {
-            rows = averaged(&self.target, &rows, INFLUENCES);
-        }
+        rows = averaged(&self.target, rows, INFLUENCES, rounds);
         let joints = |rows: &[Vec<(u32, f64)>]| Joints::new(&self.source, &self.rig, &self.target, rows, alignment);
         let first = joints(&rows);
         let seen = self.rig.telling.iter().step_by(step).filter_map(|&pose| self.rig.maps.get(pose));

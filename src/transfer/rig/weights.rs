@@ -5,6 +5,9 @@ use super::bones::Bones;
 use crate::transfer::surface::Surface;
 use glam::DVec3;
 
+/// Bones and their shares at a vertex.
+pub type Row = Vec<(u32, f64)>;
+
 /// Bones that may take part at a vertex.
 const CANDIDATES: usize = 5;
 /// A difference of a whole share from the neighbours' weights costs as much as this distance in every pose, in radii.
@@ -17,14 +20,12 @@ const SOFTEN: usize = 4;
 const LEAST: f64 = 1e-4;
 
 /// #N rows of bones and their shares.
-pub fn bind(surface: &Surface, poses: &[&[DVec3]], bones: &Bones) -> Vec<Vec<(u32, f64)>> {
-    let mut rows: Vec<Vec<(u32, f64)>> = bones.of.iter().map(|&bone| vec![(bone, 1.0)]).collect();
-    for _ in 0..SOFTEN {
-        rows = averaged(surface, &rows, CANDIDATES);
-    }
+pub fn bind(surface: &Surface, poses: &[&[DVec3]], bones: &Bones) -> Vec<Row> {
+    let mut rows: Vec<Row> = bones.of.iter().map(|&bone| vec![(bone, 1.0)]).collect();
+    rows = averaged(surface, rows, CANDIDATES, SOFTEN);
     let reach = reach(surface, bones);
     for _ in 0..ROUNDS {
-        let held = averaged(surface, &rows, 2 * CANDIDATES);
+        let held = averaged(surface, rows, 2 * CANDIDATES, 1);
         rows = (0..surface.len()).map(|v| vertex(surface, poses, bones, &reach, v, &held[v])).collect();
     }
     rows
@@ -48,7 +49,7 @@ fn vertex(
     reach: &[Vec<u32>],
     v: usize,
     held: &[(u32, f64)],
-) -> Vec<(u32, f64)> {
+) -> Row {
     let p = surface.positions[v];
     let off = |bone: u32| -> Vec<DVec3> {
         let motions = bones.motions.iter().zip(poses);
@@ -102,23 +103,30 @@ fn simplex(gram: &[[f64; CANDIDATES]], pull: &[f64]) -> Vec<f64> {
     w
 }
 
-/// Rows half their own, half their neighbours' mean; at most `most` entries each.
-pub fn averaged(surface: &Surface, rows: &[Vec<(u32, f64)>], most: usize) -> Vec<Vec<(u32, f64)>> {
+/// Rows half their own, half their neighbours' mean, some rounds over; at most `most` entries each.
+pub fn averaged(surface: &Surface, rows: Vec<Row>, most: usize, rounds: usize) -> Vec<Row> {
+    let (mut rows, mut next) = (rows, vec![Row::new(); surface.len()]);
     let mut averager = Averager::default();
-    (0..rows.len()).map(|v| averager.row(surface, rows, v, most)).collect()
+    for _ in 0..rounds {
+        for (v, row) in next.iter_mut().enumerate() {
+            averager.average(surface, &rows, v, most, row);
+        }
+        std::mem::swap(&mut rows, &mut next);
+    }
+    rows
 }
 
 /// Averages rows, one after another.
 #[derive(Default)]
 pub struct Averager {
-    sum: Vec<(u32, f64)>,
+    sum: Row,
     /// Where each bone stands in the sum, if that bone stands there.
     places: Vec<usize>,
 }
 
 impl Averager {
-    /// One of the rows of [`averaged`].
-    pub fn row(&mut self, surface: &Surface, rows: &[Vec<(u32, f64)>], v: usize, most: usize) -> Vec<(u32, f64)> {
+    /// Makes `average` one of the rows of [`averaged`], after one round.
+    pub fn average(&mut self, surface: &Surface, rows: &[Row], v: usize, most: usize, average: &mut Row) {
         let beside = surface.neighbours(v);
         self.sum.clear();
         self.add(&rows[v], if beside.is_empty() { 1.0 } else { 0.5 });
@@ -126,7 +134,9 @@ impl Averager {
         self.sum.retain(|s| s.1 > LEAST);
         self.sum.sort_unstable_by(|a, b| b.1.total_cmp(&a.1).then(a.0.cmp(&b.0)));
         self.sum.truncate(most);
-        normalised(self.sum.clone())
+        average.clear();
+        average.extend_from_slice(&self.sum);
+        normalise(average);
     }
 
     fn add(&mut self, row: &[(u32, f64)], factor: f64) {
@@ -147,12 +157,16 @@ impl Averager {
 }
 
 /// Shares that sum to 1.
-pub fn normalised(mut row: Vec<(u32, f64)>) -> Vec<(u32, f64)> {
+pub fn normalised(mut row: Row) -> Row {
+    normalise(&mut row);
+    row
+}
+
+fn normalise(row: &mut Row) {
     let sum: f64 = row.iter().map(|s| s.1).sum();
     if sum > 0.0 {
         row.iter_mut().for_each(|s| s.1 /= sum);
     }
-    row
 }
 
 #[cfg(test)]
