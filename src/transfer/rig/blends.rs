@@ -1,5 +1,6 @@
 //! Where two bones meet: the part of a surface that follows both.
 
+use super::weights::Row;
 use crate::transfer::surface::Surface;
 use glam::DVec3;
 use std::collections::BTreeMap;
@@ -26,7 +27,7 @@ impl Blend {
 pub type Blends = BTreeMap<(u32, u32), Blend>;
 
 /// The blends of `bones` bones; `rows` are their shares at the vertices of a surface.
-pub fn blends(surface: &Surface, rows: &[Vec<(u32, f64)>], bones: usize) -> Blends {
+pub fn blends(surface: &Surface, rows: &[Row], bones: usize) -> Blends {
     // A bone meets few others.
     let mut met: Vec<Vec<(u32, Blend)>> = vec![Vec::new(); bones];
     for ((row, &m), &p) in rows.iter().zip(&surface.mass).zip(&surface.positions) {

@@ -21,8 +21,8 @@ const LEAST: f64 = 1e-4;
 
 /// #N rows of bones and their shares.
 pub fn bind(surface: &Surface, poses: &[&[DVec3]], bones: &Bones) -> Vec<Row> {
-    let mut rows: Vec<Row> = bones.of.iter().map(|&bone| vec![(bone, 1.0)]).collect();
-    rows = averaged(surface, rows, CANDIDATES, SOFTEN);
+    let hard = bones.of.iter().map(|&bone| vec![(bone, 1.0)]).collect();
+    let mut rows = averaged(surface, hard, CANDIDATES, SOFTEN);
     let reach = reach(surface, bones);
     for _ in 0..ROUNDS {
         let held = averaged(surface, rows, 2 * CANDIDATES, 1);
