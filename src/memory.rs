@@ -116,6 +116,8 @@ fn advice(step: Step, sizes: Sizes, limit: u64) -> String {
                 sizes.faces
             )
         }
+        // However simple the source, there would be no room.
+        None if matches!(step, Step::Transfer(_) | Step::Faces(_)) => "Take a much simpler target.".into(),
         None => "Take a much simpler mesh.".into(),
     }
 }
@@ -165,6 +167,8 @@ mod tests {
         assert!(refused.advice.contains("poses at most of its 400"), "{}", refused.advice);
         let refused = check(Step::Segmentation, &still, [&still], 2_000).unwrap_err();
         assert!(refused.advice.contains("faces at most, instead of 10"), "{}", refused.advice);
+        let target = check(Step::Faces(sizes(1_000, 2_000, 0)), &still, [&still], 2_000).unwrap_err();
+        assert_eq!(target.advice, "Take a much simpler target.");
         let text = TooLarge { needed: 5_200_000_000, held: 310_000_000, ..refused }.to_string();
         assert!(text.starts_with("Finding the parts would take about 5.2 GB of memory, beside 310 MB for"), "{text}");
     }

@@ -122,7 +122,8 @@ impl Cholesky {
     }
 
     /// The number of stored entries of the factor.
-    pub fn entries(&self) -> usize {
+    #[cfg(test)]
+    fn entries(&self) -> usize {
         self.fronts.iter().map(|front| front.panel.len()).sum()
     }
 

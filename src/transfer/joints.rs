@@ -9,6 +9,7 @@ use super::alignment::Alignment;
 use super::kd_tree::KdTree;
 use super::rig::Rig;
 use super::rig::blends::{Blend, blends};
+use super::rig::weights::Row;
 use super::surface::Surface;
 use glam::{DAffine3, DVec3};
 use nalgebra::{Cholesky, DMatrix, Dyn};
@@ -39,11 +40,9 @@ pub struct Joints {
     system: Option<Cholesky<f64, Dyn>>,
 }
 
-type Rows = [Vec<(u32, f64)>];
-
 impl Joints {
     /// Finds the links; `rows` are the weights of the same bones on the target.
-    pub fn new(source: &Surface, rig: &Rig, target: &Surface, rows: &Rows, alignment: Alignment) -> Self {
+    pub fn new(source: &Surface, rig: &Rig, target: &Surface, rows: &[Row], alignment: Alignment) -> Self {
         let there = blends(target, rows, rig.bones);
         let mut links: Vec<Link> = Vec::new();
         let mut bones = vec![(DVec3::ZERO, DVec3::ZERO, 0.0); rig.bones];

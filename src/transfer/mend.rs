@@ -73,13 +73,13 @@ pub fn allowed(surface: &Surface, poses: &[&[DVec3]]) -> f64 {
 ///
 /// What comes apart by some length needs a strip in proportion to it, where all edges become a little longer.
 pub fn close(surface: &Surface, rows: &mut [Row], poses: &[&[DAffine3]], allowed: f64, most: usize) {
-    let at = |v: usize, row: &Row, moved: &mut [DVec3]| {
+    let follow = |v: usize, row: &Row, moved: &mut [DVec3]| {
         moved.iter_mut().zip(poses).for_each(|(at, maps)| *at = blend(row, maps, surface.positions[v]));
     };
     // Vertex by vertex, each in all poses.
     let mut moved = vec![DVec3::ZERO; rows.len() * poses.len()];
     let of = |v: usize| v * poses.len()..(v + 1) * poses.len();
-    rows.iter().enumerate().for_each(|(v, row)| at(v, row, &mut moved[of(v)]));
+    rows.iter().enumerate().for_each(|(v, row)| follow(v, row, &mut moved[of(v)]));
     let mut suspects: Vec<(usize, usize)> = edges(surface).collect();
     let averages = (AVERAGES * rows.len()).div_ceil(AVERAGED).clamp(AVERAGES, MOST_AVERAGES);
     let (mut averager, mut next) = (Averager::default(), Vec::new());
@@ -104,7 +104,7 @@ pub fn close(surface: &Surface, rows: &mut [Row], poses: &[&[DAffine3]], allowed
             }
             next.iter_mut().zip(&region).for_each(|(row, &v)| std::mem::swap(row, &mut rows[v as usize]));
         }
-        region.iter().for_each(|&v| at(v as usize, &rows[v as usize], &mut moved[of(v as usize)]));
+        region.iter().for_each(|&v| follow(v as usize, &rows[v as usize], &mut moved[of(v as usize)]));
         let around =
             |&v: &u32| surface.neighbours(v as usize).iter().map(move |&u| (v.min(u) as usize, v.max(u) as usize));
         suspects = region.iter().flat_map(around).collect();

@@ -7,7 +7,7 @@ use super::joints::Joints;
 use super::mend;
 use super::registration::{Effort, Foot, Ground, LOST, Pin, Registration, feet};
 use super::rig::Rig;
-use super::rig::weights::{averaged, normalised};
+use super::rig::weights::{Row, averaged, normalised};
 use super::spline::Spline;
 use super::surface::Surface;
 use super::{Method, Pair, Parameters, Skin, Transfer, TransferError};
@@ -249,12 +249,12 @@ impl Prepared {
     /// Every `step`th of the telling poses is looked at for tears.
     fn by_bones(&self, alignment: Alignment, bent: &[DVec3], step: usize) -> (Skin, Joints) {
         let feet = feet(&self.source, &self.ground, &self.target, bent);
-        let mut rows: Vec<Vec<(u32, f64)>> = feet.iter().map(|foot| self.pulled(foot.map(|f| f.0))).collect();
+        let mut rows: Vec<Row> = feet.iter().map(|foot| self.pulled(foot.map(|f| f.0))).collect();
         let lost: Vec<bool> = feet.iter().map(|foot| foot.is_none_or(|f| f.1 > LOST)).collect();
         mend::fill(&self.target, &mut rows, &lost);
         let rounds = (SMOOTHING * self.target.len()).div_ceil(SMOOTHED).clamp(2, MOST_SMOOTHING);
         rows = averaged(&self.target, rows, INFLUENCES, rounds);
-        let joints = |rows: &[Vec<(u32, f64)>]| Joints::new(&self.source, &self.rig, &self.target, rows, alignment);
+        let joints = |rows: &[Row]| Joints::new(&self.source, &self.rig, &self.target, rows, alignment);
         let first = joints(&rows);
         let seen = self.rig.telling.iter().step_by(step).filter_map(|&pose| self.rig.maps.get(pose));
         let seen: Vec<Vec<DAffine3>> = seen.map(|maps| first.carry(maps)).collect();
@@ -266,9 +266,9 @@ impl Prepared {
     }
 
     /// The weights of the source at a place on it.
-    fn pulled(&self, foot: Option<Foot>) -> Vec<(u32, f64)> {
+    fn pulled(&self, foot: Option<Foot>) -> Row {
         let Some(foot) = foot else { return vec![(0, 1.0)] };
-        let mut row: Vec<(u32, f64)> = Vec::new();
+        let mut row: Row = Vec::new();
         for (&v, share) in self.source.faces[foot.face as usize].iter().zip(foot.shares) {
             for &(bone, weight) in self.rig.rows.get(v as usize).into_iter().flatten() {
                 match row.iter_mut().find(|entry| entry.0 == bone) {
@@ -307,11 +307,11 @@ impl Prepared {
         let maps = self.poses.iter().map(|pose| self.by_points(&carrier, pose)).collect();
         let row = |&v: &u32| {
             let shares = weights.row(v as usize).iter().zip(0_u32..).map(|(&w, h)| (h, w));
-            let mut row: Vec<(u32, f64)> = shares.filter(|entry| entry.1 > 0.0).collect();
+            let mut row: Row = shares.filter(|entry| entry.1 > 0.0).collect();
             row.sort_by(|a, b| b.1.total_cmp(&a.1).then(a.0.cmp(&b.0)));
             normalised(row)
         };
-        let rows: Vec<Vec<(u32, f64)>> = self.target.vertex.iter().map(row).collect();
+        let rows: Vec<Row> = self.target.vertex.iter().map(row).collect();
         let mut skin = self.skin(pairs.len(), &rows, maps);
         skin.handles = pairs.iter().map(|pair| pair.target).collect();
         (skin, carrier)
@@ -337,7 +337,7 @@ impl Prepared {
     }
 
     /// A skin of all given vertices, of rows for the places.
-    fn skin(&self, count: usize, rows: &[Vec<(u32, f64)>], maps: Vec<Vec<DAffine3>>) -> Skin {
+    fn skin(&self, count: usize, rows: &[Row], maps: Vec<Vec<DAffine3>>) -> Skin {
         let mut strongest = vec![(0.0, 0); count];
         for (row, &vertex) in rows.iter().zip(&self.target.vertex) {
             for &(handle, share) in row {

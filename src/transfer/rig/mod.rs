@@ -11,6 +11,7 @@ pub mod weights;
 
 use super::surface::Surface;
 use glam::{DAffine3, DVec3};
+use weights::Row;
 
 /// A skin of a [`Surface`], in its unit ball.
 #[derive(Clone, Debug, Default)]
@@ -18,7 +19,7 @@ pub struct Rig {
     /// The number of bones.
     pub bones: usize,
     /// #N rows: bones and their shares, which sum to 1.
-    pub rows: Vec<Vec<(u32, f64)>>,
+    pub rows: Vec<Row>,
     /// Where bones meet.
     pub blends: blends::Blends,
     /// For each pose, the motion of each bone.
@@ -57,7 +58,7 @@ pub fn blend(row: &[(u32, f64)], maps: &[DAffine3], point: DVec3) -> DVec3 {
     row.iter().filter_map(|&(bone, w)| Some(w * maps.get(bone as usize)?.transform_point3(point))).sum()
 }
 
-fn deviation(surface: &Surface, rows: &[Vec<(u32, f64)>], pose: &[DVec3], maps: &[DAffine3]) -> f64 {
+fn deviation(surface: &Surface, rows: &[Row], pose: &[DVec3], maps: &[DAffine3]) -> f64 {
     let at = surface.positions.iter().zip(rows).map(|(&p, row)| blend(row, maps, p));
     at.zip(pose).zip(&surface.mass).map(|((a, b), m)| m * a.distance(*b)).sum()
 }

@@ -1,5 +1,6 @@
 //! The motions of given bones in a pose: rotations bone by bone, then all translations together.
 
+use super::weights::Row;
 use crate::linalg::rigid_fit::Moments;
 use crate::transfer::surface::Surface;
 use glam::{DAffine3, DVec3};
@@ -13,7 +14,7 @@ const HOLD: f64 = 1e-3;
 /// What the fit of a pose needs of the weights.
 #[derive(Clone, Debug, Default)]
 pub struct Motions {
-    rows: Vec<Vec<(u32, f64)>>,
+    rows: Vec<Row>,
     bones: usize,
     hold: Vec<f64>,
     system: Option<Cholesky<f64, Dyn>>,
@@ -21,7 +22,7 @@ pub struct Motions {
 
 impl Motions {
     /// Prepares the weights of a surface.
-    pub fn new(surface: &Surface, rows: &[Vec<(u32, f64)>], bones: usize) -> Self {
+    pub fn new(surface: &Surface, rows: &[Row], bones: usize) -> Self {
         let mut system = DMatrix::zeros(bones, bones);
         let mut hold = vec![1e-12; bones];
         for (row, m) in rows.iter().zip(&surface.mass) {
