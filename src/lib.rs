@@ -13,6 +13,8 @@
 //! struct; they know nothing of files, of the browser or of drawing.
 
 pub mod clock;
+#[cfg(feature = "solvers")]
+pub mod crew;
 pub mod export;
 pub mod import;
 #[cfg(feature = "solvers")]

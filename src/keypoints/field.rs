@@ -11,6 +11,7 @@
 
 use crate::linalg::envelope::Envelope;
 use crate::mesh::laplacian::Laplacian;
+use serde::{Deserialize, Serialize};
 
 /// Rounds of mending, for a field and for an estimate of one; vertices are set free only in the first half of them, so that
 /// no cycle lasts.
@@ -38,7 +39,7 @@ pub struct Energy {
 }
 
 /// A field and the vertices at which it is held at 0 by its bound.
-#[derive(Clone, Debug, Default)]
+#[derive(Clone, Debug, Default, Serialize, Deserialize)]
 pub struct Field {
     /// #V values, not negative.
     pub value: Vec<f64>,

@@ -2,6 +2,7 @@
 
 use super::result::{Fitted, Rounds};
 use super::surface::Surface;
+use crate::crew::Crew;
 use crate::sequence::Sequence;
 use crate::skinning::{Fit, FitParameters, Fitter, Rig, Rows, clusters};
 use crate::weights::{self, Biharmonic, Weights, WeightsError};
@@ -31,11 +32,16 @@ impl<'a> Full<'a> {
     }
 
     /// The weights of points (vertices of the sequence), from weights of nearly the same points where there are some.
-    pub fn weights(&self, points: &[u32], before: Option<&Weights>) -> Result<Weights, WeightsError> {
+    pub async fn weights(
+        &self,
+        crew: &impl Crew,
+        points: &[u32],
+        before: Option<&Weights>,
+    ) -> Result<Weights, WeightsError> {
         let parameters = weights::Parameters::default();
         match before {
-            Some(before) => self.biharmonic.update(before, points, &parameters),
-            None => self.biharmonic.weights(points, &parameters),
+            Some(before) => self.biharmonic.update_by(crew, before, points, &parameters).await,
+            None => self.biharmonic.weights_by(crew, points, &parameters).await,
         }
     }
 

@@ -5,6 +5,7 @@
 
 use super::full::Full;
 use super::result::{Replacement, Step, Tried};
+use crate::crew::Crew;
 use crate::weights::WeightsError;
 
 /// A replacement must gain more than this share of the error, and than this: below it, errors are rounding.
@@ -26,21 +27,23 @@ pub struct Found {
 
 /// Runs both stages. `enough` hears the number of points and the error and says whether to stop adding. `None` where
 /// `keep_going` says so.
-pub fn search(
-    full: &Full,
+pub async fn search(
+    crew: &impl Crew,
+    full: &Full<'_>,
     candidates: &[u32],
     enough: &mut dyn FnMut(usize, f64) -> bool,
     keep_going: &mut dyn FnMut() -> bool,
 ) -> Result<Option<Found>, WeightsError> {
     let mut points: Vec<u32> = candidates.iter().take(1).copied().collect();
     let (mut steps, mut replacements) = (Vec::new(), Vec::new());
-    let (mut groups, mut error) = accepted(full, &points)?;
+    let (mut groups, mut error) = accepted(crew, full, &points).await?;
     while !enough(points.len(), error) {
         let rest: Vec<u32> = candidates.iter().copied().filter(|c| !points.contains(c)).collect();
-        let Some(tried) = tried(full, &points, &rest, &groups, keep_going)? else { return Ok(None) };
+        let tried = tried(crew, full, &points, &rest, &groups, keep_going).await?;
+        let Some(tried) = tried else { return Ok(None) };
         let Some(best) = best(&tried) else { break };
         points.push(best.vertex);
-        (groups, error) = accepted(full, &points)?;
+        (groups, error) = accepted(crew, full, &points).await?;
         steps.push(Step { tried, chosen: best.vertex, error: best.error });
     }
     for _ in 0..ROUNDS {
@@ -49,11 +52,12 @@ pub fn search(
             let mut others = points.clone();
             let gone = others.remove(place);
             let rest: Vec<u32> = candidates.iter().copied().filter(|c| !points.contains(c)).collect();
-            let Some(tried) = tried(full, &others, &rest, &groups, keep_going)? else { return Ok(None) };
+            let tried = tried(crew, full, &others, &rest, &groups, keep_going).await?;
+            let Some(tried) = tried else { return Ok(None) };
             if let Some(best) = best(&tried).filter(|best| best.error < error * (1.0 - WORTH) - ROUNDING) {
                 let mut next = points.clone();
                 next[place] = best.vertex;
-                let (next_groups, next_error) = accepted(full, &next)?;
+                let (next_groups, next_error) = accepted(crew, full, &next).await?;
                 // New groups change the error a little: only what is better with them is an improvement.
                 if next_error < error {
                     (points, groups, error) = (next, next_groups, next_error);
@@ -69,16 +73,17 @@ pub fn search(
 }
 
 /// The groups of a set and its error with them.
-fn accepted(full: &Full, points: &[u32]) -> Result<(Vec<u32>, f64), WeightsError> {
-    let weights = full.weights(points, None)?;
+async fn accepted(crew: &impl Crew, full: &Full<'_>, points: &[u32]) -> Result<(Vec<u32>, f64), WeightsError> {
+    let weights = full.weights(crew, points, None).await?;
     let groups = full.groups(&weights);
     let error = full.error(&weights, &groups);
     Ok((groups, error))
 }
 
 /// The error of the set with each of `rest`; `None` where `keep_going` says so.
-fn tried(
-    full: &Full,
+async fn tried(
+    crew: &impl Crew,
+    full: &Full<'_>,
     points: &[u32],
     rest: &[u32],
     groups: &[u32],
@@ -91,7 +96,8 @@ fn tried(
             return Ok(None);
         }
         set.push(vertex);
-        tried.push(Tried { vertex, error: full.error(&full.weights(&set, None)?, groups) });
+        let weights = full.weights(crew, &set, None).await?;
+        tried.push(Tried { vertex, error: full.error(&weights, groups) });
         set.pop();
     }
     Ok(Some(tried))

@@ -33,5 +33,5 @@ mod watch;
 
 pub use parameters::{Parameters, Stop};
 pub use result::{Fitted, KeyPointError, KeyPoints, Replacement, Rounds, Step, Tried};
-pub use select::{fit_all, select};
+pub use select::{fit_all, fit_all_by, select, select_by};
 pub use thin::thinned;

@@ -16,8 +16,10 @@ use super::coarse::Coarse;
 use super::field::{Field, NOTHING, Scratch};
 use super::leftover::Leftover;
 use super::result::Tried;
+use crate::crew::Crew;
 use crate::skinning::{FitParameters, Fitter, Rig, Rows, clusters};
 use glam::DVec3;
+use serde::{Deserialize, Serialize};
 
 /// How many candidates pass the first and the second sieve when a point is added.
 const ADDING: [usize; 2] = [20, 3];
@@ -38,11 +40,8 @@ const ROUNDING: f64 = 1e-12;
 /// A field that is below this at a vertex hardly feels what happens there.
 const FELT: f64 = 1e-3;
 
-/// Asked now and then: whether to go on.
-pub type KeepGoing<'a> = &'a mut dyn FnMut() -> bool;
-
 /// A set of key points on the coarse mesh.
-#[derive(Clone, Default)]
+#[derive(Clone, Default, Serialize, Deserialize)]
 pub struct Set {
     /// Vertices of the coarse mesh, in the order chosen.
     pub members: Vec<u32>,
@@ -54,11 +53,13 @@ pub struct Set {
     pub error: f64,
 }
 
+/// A vertex and an estimate of its field.
+type Probed<'f> = (u32, &'f Field);
+
 /// The search at one moment.
 pub struct Search<'a> {
     coarse: &'a Coarse,
     fit: FitParameters,
-    scratch: Scratch,
     /// The set so far.
     pub set: Set,
     /// For each candidate, an estimate of its field if it were added.
@@ -77,11 +78,13 @@ impl<'a> Search<'a> {
     /// [`Search::probe`] replaced.
     pub fn from_points(coarse: &'a Coarse, fit: FitParameters, points: &[u32]) -> Self {
         let fit = FitParameters { rounds: 6, tolerance: 1e-3, ..fit };
-        let mut search = Self { coarse, fit, scratch: Scratch::default(), set: Set::default(), probes: Vec::new() };
+        let mut search = Self { coarse, fit, set: Set::default(), probes: Vec::new() };
         if points.is_empty() {
             return search;
         }
-        let fields = (0..points.len()).map(|k| search.field(points[k], &without(points, k), None)).collect();
+        let mut scratch = Scratch::default();
+        let field = |k: usize| coarse.energy.field(points[k], &without(points, k), None, &mut scratch);
+        let fields = (0..points.len()).map(field).collect();
         let (groups, rough) = (vec![0; coarse.energy.len()], vec![false; points.len()]);
         search.set = search.regrouped(Set { members: points.to_vec(), fields, rough, groups, error: 0.0 });
         search
@@ -89,10 +92,11 @@ impl<'a> Search<'a> {
 
     /// Estimates the candidates' fields anew: while the set changes, they grow worse.
     pub fn probe(&mut self) {
-        let members = self.set.members.clone();
+        let Set { members, fields, .. } = &self.set;
+        let mut scratch = Scratch::default();
         let probe = |&c: &u32| match members.iter().position(|&m| m == c) {
-            Some(place) => self.set.fields[place].clone(),
-            None => self.coarse.energy.estimate(c, &members, &mut self.scratch),
+            Some(place) => fields[place].clone(),
+            None => self.coarse.energy.estimate(c, members, &mut scratch),
         };
         self.probes = self.coarse.candidates.iter().map(probe).collect();
     }
@@ -107,71 +111,74 @@ impl<'a> Search<'a> {
         (self.set, self.probes) = (set, probes);
     }
 
-    /// Adds the best candidate; what was tried, or `None` if there is no other candidate, or no wish to go on.
-    pub fn add(&mut self, keep_going: KeepGoing) -> Option<Vec<Tried>> {
+    /// Adds the best candidate; what was tried, or `None` if there is no other candidate.
+    pub async fn add(&mut self, crew: &impl Crew) -> Option<Vec<Tried>> {
         let probes = self.probes.clone();
-        let free: Vec<(u32, &Field)> = self.coarse.candidates.iter().copied().zip(&probes).collect();
-        let base = self.set.clone();
-        let (best, tried) = self.sieve(&base, &free, ADDING, f64::INFINITY, keep_going)?;
-        self.accept(best.map(|best| self.regrouped(best))?, probes);
+        let free: Vec<Probed> = self.coarse.candidates.iter().copied().zip(&probes).collect();
+        let ranked = self.ranked(&self.set, &free);
+        let [some, few] = ADDING;
+        let some = &ranked[..some.min(ranked.len())];
+        let errors = crew.each(some.len(), |i| self.error(&self.with(&self.set, some[i]))).await;
+        let mut tried: Vec<(f64, Probed)> = errors.into_iter().zip(some.iter().copied()).collect();
+        tried.sort_by(|a, b| a.0.total_cmp(&b.0).then(a.1.0.cmp(&b.1.0)));
+        let refined = crew.each(few.min(tried.len()), |i| self.refined(self.with(&self.set, tried[i].1))).await;
+        tried.iter_mut().zip(&refined).for_each(|(tried, set)| tried.0 = set.error);
+        let best = refined.into_iter().reduce(|best, set| if set.error < best.error { set } else { best })?;
+        let tried = tried.iter().map(|&(error, (vertex, _))| self.tried(vertex, error)).collect();
+        self.accept(self.regrouped(best), probes);
         Some(tried)
     }
 
-    /// Takes away the point that can be spared best; `None` on no wish to go on, or if there is only one.
-    pub fn remove(&mut self, keep_going: KeepGoing) -> Option<()> {
-        let (place, rest) = self.spared(&self.set, keep_going)?;
+    /// Takes away the point that can be spared best; `None` if there is only one.
+    pub async fn remove(&mut self, crew: &impl Crew) -> Option<()> {
+        let place = self.spared(&self.set, crew).await?;
         let probes = self.released(place);
-        let rest = self.refined(rest);
+        let rest = self.refined(self.without(&self.set, place));
         self.set = self.regrouped(rest);
         self.probes = probes;
         Some(())
     }
 
-    /// Tries to replace the point at `place`; whether a better one was found, or `None` on no wish to go on.
-    pub fn replace(&mut self, place: usize, keep_going: KeepGoing) -> Option<bool> {
+    /// A better set, the point at `place` replaced by another candidate; see [`Search::accept_instead`].
+    pub fn replaced(&self, place: usize) -> Option<Set> {
         let probes = self.released(place);
-        let candidates: Vec<(u32, &Field)> = self.coarse.candidates.iter().copied().zip(&probes).collect();
-        let best = self.instead(place, &candidates, REPLACING, keep_going)?;
-        Some(self.accept_instead(place, best, Some(probes)))
+        let candidates: Vec<Probed> = self.coarse.candidates.iter().copied().zip(&probes).collect();
+        self.instead(place, &candidates, REPLACING)
     }
 
-    /// Tries to move the point at `place` to a vertex near it; whether that was for the better, or `None` on no wish to go
-    /// on.
-    pub fn shift(&mut self, place: usize, keep_going: KeepGoing) -> Option<bool> {
+    /// A better set, the point at `place` moved to a vertex near it; see [`Search::accept_instead`].
+    pub fn shifted(&self, place: usize) -> Option<Set> {
         let near = self.coarse.around(self.set.members[place], RINGS);
         let zeros = without(&self.set.members, place);
-        let fields = self.coarse.energy.fields_like(&near, &zeros, &self.set.fields[place], &mut self.scratch);
-        let near: Vec<(u32, &Field)> = near.iter().copied().zip(&fields).filter(|(_, f)| !f.value.is_empty()).collect();
-        let best = self.instead(place, &near, MOVING, keep_going)?;
-        Some(self.accept_instead(place, best, None))
+        let fields = self.coarse.energy.fields_like(&near, &zeros, &self.set.fields[place], &mut Scratch::default());
+        let near: Vec<Probed> = near.iter().copied().zip(&fields).filter(|(_, f)| !f.value.is_empty()).collect();
+        self.instead(place, &near, MOVING)
     }
 
-    /// The best of others, with estimates of their fields, in place of the point at `place`.
-    fn instead(
-        &mut self,
-        place: usize,
-        others: &[(u32, &Field)],
-        pass: [usize; 2],
-        keep_going: KeepGoing,
-    ) -> Option<Option<Set>> {
+    /// The set with the best of others in place of the point at `place`, if it is better;
+    /// the new point comes last. `pass` is how many of them pass the first and the second sieve.
+    fn instead(&self, place: usize, others: &[Probed], pass: [usize; 2]) -> Option<Set> {
         let base = self.without(&self.set, place);
-        let (best, _) = self.sieve(&base, others, pass, self.set.error, keep_going)?;
+        let ranked = self.ranked(&base, others);
+        let ranked = ranked.into_iter().take(pass[0]);
+        let mut tried: Vec<(f64, Probed)> = ranked.map(|one| (self.error(&self.with(&base, one)), one)).collect();
+        tried.sort_by(|a, b| a.0.total_cmp(&b.0).then(a.1.0.cmp(&b.1.0)));
+        let hopeful = tried.iter().take(pass[1]).filter(|(error, _)| *error <= self.set.error);
+        let refined = hopeful.map(|&(_, one)| self.refined(self.with(&base, one)));
+        let best = refined.reduce(|best, set| if set.error < best.error { set } else { best })?;
         // New groups change the error a little: only what is better with them is an improvement.
-        Some(best.map(|best| self.regrouped(best)))
+        let best = self.regrouped(best);
+        (best.error < self.set.error * (1.0 - WORTH) - ROUNDING).then_some(best)
     }
 
-    /// Takes a set over, whose last point replaces that at `place`, if it is better. `probes` are those without the point at
-    /// `place`, if they are known.
-    fn accept_instead(&mut self, place: usize, best: Option<Set>, probes: Option<Vec<Field>>) -> bool {
-        let enough = self.set.error * (1.0 - WORTH) - ROUNDING;
-        let Some(mut best) = best.filter(|best| best.error < enough) else { return false };
-        let probes = probes.unwrap_or_else(|| self.released(place));
+    /// Takes a set over whose last point replaces that at `place`.
+    pub fn accept_instead(&mut self, place: usize, mut better: Set) {
+        let probes = self.released(place);
         // The new point takes the place of the old one.
-        best.members[place..].rotate_right(1);
-        best.fields[place..].rotate_right(1);
-        best.rough[place..].rotate_right(1);
-        self.accept(best, probes);
-        true
+        better.members[place..].rotate_right(1);
+        better.fields[place..].rotate_right(1);
+        better.rough[place..].rotate_right(1);
+        self.accept(better, probes);
     }
 
     /// The probes when the point at `place` is not there.
@@ -190,41 +197,29 @@ impl<'a> Search<'a> {
         self.coarse.candidates.iter().zip(&self.probes).map(released).collect()
     }
 
-    /// The point that can be spared best, and an estimate of the set without it.
-    fn spared(&self, set: &Set, keep_going: KeepGoing) -> Option<(usize, Set)> {
+    /// The place of the point that can be spared best; `None` if there is only one.
+    async fn spared(&self, set: &Set, crew: &impl Crew) -> Option<usize> {
         if set.members.len() < 2 {
             return None;
         }
-        let mut best: Option<(usize, Set)> = None;
-        for place in 0..set.members.len() {
-            if !keep_going() {
-                return None;
-            }
-            let mut rest = self.without(set, place);
-            rest.error = self.error(&rest);
-            if best.as_ref().is_none_or(|(_, b)| rest.error < b.error) {
-                best = Some((place, rest));
-            }
-        }
-        best
+        let errors = crew.each(set.members.len(), |place| self.error(&self.without(set, place))).await;
+        (0..errors.len()).min_by(|&a, &b| errors[a].total_cmp(&errors[b]))
     }
 
-    /// The points (vertices of the coarse mesh) in the order in which they count, and the error with the first 1, 2, … of them: time and again the one
-    /// is taken away that can be spared best, and what is left first comes first.
-    pub fn order(&mut self, keep_going: KeepGoing) -> Option<(Vec<u32>, Vec<f64>)> {
+    /// The points (vertices of the coarse mesh) in the order in which they count, and the error with the first 1, 2, … of
+    /// them: time and again the one is taken away that can be spared best, and what is left first comes first.
+    pub async fn order(&self, crew: &impl Crew) -> (Vec<u32>, Vec<f64>) {
         let mut set = self.set.clone();
         let (mut order, mut errors) = (Vec::new(), vec![set.error]);
-        while set.members.len() > 1 {
-            let (gone, rest) = self.spared(&set, keep_going)?;
+        while let Some(gone) = self.spared(&set, crew).await {
             order.push(set.members[gone]);
-            set = self.refined(rest);
-            set = self.regrouped(set);
+            set = self.regrouped(self.refined(self.without(&set, gone)));
             errors.push(set.error);
         }
         order.extend(set.members);
         order.reverse();
         errors.reverse();
-        Some((order, errors))
+        (order, errors)
     }
 
     /// Takes a set over as the current one; `probes` are those of the set before its last point came in.
@@ -251,10 +246,6 @@ impl<'a> Search<'a> {
         set
     }
 
-    fn field(&mut self, one: u32, zeros: &[u32], before: Option<&Field>) -> Field {
-        self.coarse.energy.field(one, zeros, before, &mut self.scratch)
-    }
-
     /// The set without one of its points: the fields that it held down rise.
     fn without(&self, set: &Set, place: usize) -> Set {
         let mut rest = set.clone();
@@ -272,7 +263,7 @@ impl<'a> Search<'a> {
     }
 
     /// The set with one point more: the fields that reach there are held down.
-    fn with(&self, base: &Set, vertex: u32, probe: &Field) -> Set {
+    fn with(&self, base: &Set, (vertex, probe): Probed) -> Set {
         let mut set = base.clone();
         for (field, rough) in set.fields.iter_mut().zip(&mut set.rough) {
             if field.value[vertex as usize] > NOTHING {
@@ -287,10 +278,12 @@ impl<'a> Search<'a> {
     }
 
     /// The set with true fields where it has estimates, and its error.
-    fn refined(&mut self, mut set: Set) -> Set {
+    fn refined(&self, mut set: Set) -> Set {
+        let mut scratch = Scratch::default();
         for k in 0..set.members.len() {
             if set.rough[k] {
-                set.fields[k] = self.field(set.members[k], &without(&set.members, k), Some(&set.fields[k]));
+                let zeros = without(&set.members, k);
+                set.fields[k] = self.coarse.energy.field(set.members[k], &zeros, Some(&set.fields[k]), &mut scratch);
                 set.rough[k] = false;
             }
         }
@@ -340,46 +333,14 @@ impl<'a> Search<'a> {
         sum / surface.poses.len().max(1) as f64
     }
 
-    /// The best of `others`, vertices with estimates of their fields, that passes all sieves, and all that were fitted.
-    /// Estimates above `limit` do not pass.
-    fn sieve(
-        &mut self,
-        base: &Set,
-        others: &[(u32, &Field)],
-        pass: [usize; 2],
-        limit: f64,
-        keep_going: KeepGoing,
-    ) -> Option<(Option<Set>, Vec<Tried>)> {
+    /// Of `others`, those that are not in the set, by how much they take from what
+    /// `base` leaves over, the most first.
+    fn ranked<'f>(&self, base: &Set, others: &[Probed<'f>]) -> Vec<Probed<'f>> {
         let leftover = Leftover::new(self.coarse, &base.members, &self.weights(base), self.fit.hold);
-        let free = others.iter().filter(|(v, _)| !base.members.contains(v) && !self.set.members.contains(v));
-        let mut gains: Vec<(f64, u32, &Field)> = free.map(|&(v, field)| (leftover.gain(v, field), v, field)).collect();
-        gains.sort_by(|a, b| b.0.total_cmp(&a.0).then(a.1.cmp(&b.1)));
-        let mut estimates = Vec::new();
-        for &(_, vertex, field) in gains.iter().take(pass[0]) {
-            if !keep_going() {
-                return None;
-            }
-            let mut set = self.with(base, vertex, field);
-            set.error = self.error(&set);
-            estimates.push((vertex, set));
-        }
-        estimates.sort_by(|a, b| a.1.error.total_cmp(&b.1.error).then(a.0.cmp(&b.0)));
-        let mut tried: Vec<Tried> = estimates.iter().map(|(c, set)| self.tried(*c, set.error)).collect();
-        let mut best: Option<Set> = None;
-        for ((c, set), tried) in estimates.into_iter().zip(&mut tried).take(pass[1]) {
-            if set.error > limit {
-                break;
-            }
-            if !keep_going() {
-                return None;
-            }
-            let set = self.refined(set);
-            *tried = self.tried(c, set.error);
-            if best.as_ref().is_none_or(|b| set.error < b.error) {
-                best = Some(set);
-            }
-        }
-        Some((best, tried))
+        let free = others.iter().filter(|(v, _)| !self.set.members.contains(v));
+        let mut gains: Vec<(f64, Probed)> = free.map(|&one| (leftover.gain(one.0, one.1), one)).collect();
+        gains.sort_by(|a, b| b.0.total_cmp(&a.0).then(a.1.0.cmp(&b.1.0)));
+        gains.into_iter().map(|(_, one)| one).collect()
     }
 
     fn tried(&self, vertex: u32, error: f64) -> Tried {

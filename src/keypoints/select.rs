@@ -10,6 +10,7 @@ use super::stages;
 use super::surface::Surface;
 use super::watch::Watch;
 use super::{Parameters, Stop};
+use crate::crew::{Crew, Threads, at_once};
 use crate::observer::Observer;
 use crate::sequence::Sequence;
 use crate::warning::Warning;
@@ -29,6 +30,16 @@ const INVISIBLE: f64 = 1e-3;
 
 /// Chooses key points.
 pub fn select(
+    sequence: &Sequence,
+    parameters: &Parameters,
+    observer: &mut dyn Observer,
+) -> Result<KeyPoints, KeyPointError> {
+    at_once(select_by(&Threads, sequence, parameters, observer))
+}
+
+/// [`select`], whose trials a crew shares out.
+pub async fn select_by(
+    crew: &impl Crew,
     sequence: &Sequence,
     parameters: &Parameters,
     observer: &mut dyn Observer,
@@ -53,12 +64,13 @@ pub fn select(
         warnings.push(Warning::new("still-mesh", message));
         let count = parameters.points.unwrap_or(STILL).min(parameters.max);
         let points: Vec<u32> = names.iter().take(count).copied().collect();
-        let end = Measured { errors: vec![0.0; points.len()], weights: full.weights(&points, None)?, points };
+        let end =
+            Measured { errors: vec![0.0; points.len()], weights: full.weights(crew, &points, None).await?, points };
         Choice { end, steps: Vec::new(), replacements: Vec::new() }
     } else if parameters.literal {
-        by_the_letter(&full, parameters, &names, &mut watch)?
+        by_the_letter(crew, &full, parameters, &names, &mut watch).await?
     } else {
-        stages::run(&found, &full, parameters, &mut watch)?
+        stages::run(crew, &found, &full, parameters, &mut watch).await?
     };
 
     watch.begin("fits", 0.95)?;
@@ -88,10 +100,20 @@ pub fn select(
 
 /// Weights, groups and fits for points given by hand (vertices of the sequence, no two at one place).
 pub fn fit_all(sequence: &Sequence, points: &[u32], parameters: &Parameters) -> Result<Fitted, KeyPointError> {
+    at_once(fit_all_by(&Threads, sequence, points, parameters))
+}
+
+/// [`fit_all`], whose weights a crew shares out.
+pub async fn fit_all_by(
+    crew: &impl Crew,
+    sequence: &Sequence,
+    points: &[u32],
+    parameters: &Parameters,
+) -> Result<Fitted, KeyPointError> {
     parameters.check()?;
     let surface = Surface::new(sequence);
     let full = prepared(sequence, &surface, parameters)?;
-    let weights = full.weights(points, None)?;
+    let weights = full.weights(crew, points, None).await?;
     Ok(full.fitted(weights))
 }
 
@@ -125,18 +147,19 @@ pub struct Measured {
 ///
 /// On large meshes, `estimates` of it are taken from the coarse mesh, by the factor by which they are wrong at the end;
 /// the end itself is always measured on the mesh. With a sufficient error `enough`, the curve ends there.
-pub fn measured(
-    full: &Full,
+pub async fn measured(
+    crew: &impl Crew,
+    full: &Full<'_>,
     points: &[u32],
     estimates: Option<&[f64]>,
     enough: Option<f64>,
-    watch: &mut Watch,
+    watch: &mut Watch<'_>,
 ) -> Result<Measured, KeyPointError> {
     let mut errors = Vec::new();
     let mut weights = None;
     let mut from = 1;
     if let Some(estimates) = estimates.filter(|_| full.surface.reference.len() > MEASURED) {
-        let all = full.weights(points, None)?;
+        let all = full.weights(crew, points, None).await?;
         let error = full.error(&all, &full.groups(&all));
         let factor = estimates.last().map_or(1.0, |&e| if e > 0.0 { error / e } else { 1.0 });
         errors.extend(estimates.iter().map(|e| e * factor));
@@ -150,7 +173,7 @@ pub fn measured(
     }
     for count in from..=points.len() {
         watch.tell(0.8 + 0.15 * count as f64 / points.len() as f64)?;
-        let of_these = full.weights(&points[..count], weights.as_ref())?;
+        let of_these = full.weights(crew, &points[..count], weights.as_ref()).await?;
         let error = full.error(&of_these, &full.groups(&of_these));
         errors.push(error);
         weights = Some(of_these);
@@ -160,16 +183,17 @@ pub fn measured(
     }
     let weights = match weights {
         Some(weights) => weights,
-        None => full.weights(points, None)?,
+        None => full.weights(crew, points, None).await?,
     };
     Ok(Measured { points: points[..errors.len()].to_vec(), errors, weights })
 }
 
-fn by_the_letter(
-    full: &Full,
+async fn by_the_letter(
+    crew: &impl Crew,
+    full: &Full<'_>,
     parameters: &Parameters,
     candidates: &[u32],
-    watch: &mut Watch,
+    watch: &mut Watch<'_>,
 ) -> Result<Choice, KeyPointError> {
     watch.begin("literal search", 0.05)?;
     let mut curve = Vec::new();
@@ -177,10 +201,10 @@ fn by_the_letter(
         curve.push(error);
         is_enough(parameters, &curve)
     };
-    let found = literal::search(full, candidates, &mut enough, &mut || watch.go_on(0.1))?;
+    let found = literal::search(crew, full, candidates, &mut enough, &mut || watch.go_on(0.1)).await?;
     let found = found.ok_or(KeyPointError::Cancelled)?;
     watch.begin("error curve", 0.8)?;
-    let end = measured(full, &found.points, None, None, watch)?;
+    let end = measured(crew, full, &found.points, None, None, watch).await?;
     Ok(Choice { end, steps: found.steps, replacements: found.replacements })
 }
 

@@ -9,11 +9,12 @@ use super::coarse::Coarse;
 use super::full::Full;
 use super::poses;
 use super::result::{KeyPointError, Replacement, Step};
-use super::search::{Search, WORTH};
+use super::search::{Search, Set, WORTH};
 use super::select::{Choice, is_enough, measured};
 use super::surface::Surface;
 use super::watch::Watch;
 use super::{Parameters, Stop};
+use crate::crew::Crew;
 
 /// Vertices of the coarse mesh on which sets are sought, and of the one on which they are settled.
 const COARSE: [usize; 2] = [600, 900];
@@ -49,7 +50,13 @@ impl Trail<'_> {
 }
 
 /// Chooses among candidates, `found` on the surface, and vertices near them.
-pub fn run(found: &[u32], full: &Full, parameters: &Parameters, watch: &mut Watch) -> Result<Choice, KeyPointError> {
+pub async fn run(
+    crew: &impl Crew,
+    found: &[u32],
+    full: &Full<'_>,
+    parameters: &Parameters,
+    watch: &mut Watch<'_>,
+) -> Result<Choice, KeyPointError> {
     let surface = full.surface;
     let gammas = [parameters.gamma_rotation, parameters.gamma_shear];
     let poses = poses::spread(surface);
@@ -63,11 +70,8 @@ pub fn run(found: &[u32], full: &Full, parameters: &Parameters, watch: &mut Watc
     loop {
         watch.begin("adding points", 0.1)?;
         while more {
-            let done = 0.1 + 0.25 * (1.0 - (-(curve.len() as f64) / MANY).exp());
-            let Some(mut tried) = search.add(&mut || watch.go_on(done)) else {
-                watch.tell(done)?;
-                break;
-            };
+            watch.tell(0.1 + 0.25 * (1.0 - (-(curve.len() as f64) / MANY).exp()))?;
+            let Some(mut tried) = search.add(crew).await else { break };
             tried.iter_mut().for_each(|t| t.vertex = surface.origin[t.vertex as usize]);
             let chosen = search.set.members.last().map_or(0, |&m| trail.name(&coarse, m));
             steps.push(Step { tried, chosen, error: search.set.error });
@@ -75,22 +79,23 @@ pub fn run(found: &[u32], full: &Full, parameters: &Parameters, watch: &mut Watc
             more = !is_enough(parameters, &curve);
         }
         watch.begin("replacing points", 0.35)?;
-        in_turn(&mut search, Search::replace, [0.35, 0.42], &coarse, &mut trail, watch)?;
+        in_turn(crew, &mut search, Search::replaced, [0.35, 0.42], &coarse, &mut trail, watch).await?;
         watch.begin("moving points", 0.42)?;
-        in_turn(&mut search, Search::shift, [0.42, 0.5], &coarse, &mut trail, watch)?;
+        in_turn(crew, &mut search, Search::shifted, [0.42, 0.5], &coarse, &mut trail, watch).await?;
         let count = search.set.members.len();
         let mut kept: Vec<u32> = search.set.members.iter().map(|&m| coarse.surface.origin[m as usize]).collect();
         let others: Vec<u32> = found.iter().copied().filter(|v| !kept.contains(v)).take(AGAIN).collect();
         kept.extend(others);
         let finer = Coarse::new(surface, &kept, &poses, COARSE[1], gammas);
         let mut last = Search::from_points(&finer, parameters.fit(), &finer.candidates[..count]);
-        settle(&mut last, &finer, &mut trail, watch)?;
+        settle(crew, &mut last, &finer, &mut trail, watch).await?;
         watch.begin("ordering points", 0.75)?;
-        let (order, estimates) = last.order(&mut || watch.go_on(0.78)).ok_or(KeyPointError::Cancelled)?;
+        let (order, estimates) = last.order(crew).await;
         let points: Vec<u32> = order.into_iter().map(|m| trail.name(&finer, m)).collect();
         watch.begin("error curve", 0.8)?;
         let by_error = parameters.points.is_none() && parameters.stop == Stop::Error;
-        let end = measured(full, &points, Some(&estimates), by_error.then_some(parameters.error), watch)?;
+        let enough = by_error.then_some(parameters.error);
+        let end = measured(crew, full, &points, Some(&estimates), enough, watch).await?;
         // The coarse mesh may have been too hopeful.
         let reached = end.errors.last().is_none_or(|&error| error <= parameters.error);
         let most = parameters.max.min(coarse.candidates.len());
@@ -102,48 +107,50 @@ pub fn run(found: &[u32], full: &Full, parameters: &Parameters, watch: &mut Watc
 }
 
 /// Moves, exchanges and replaces points on the finer mesh, where they come to lie elsewhere.
-fn settle<'a>(
+async fn settle<'a>(
+    crew: &impl Crew,
     search: &mut Search<'a>,
     finer: &'a Coarse,
-    trail: &mut Trail,
-    watch: &mut Watch,
+    trail: &mut Trail<'_>,
+    watch: &mut Watch<'_>,
 ) -> Result<(), KeyPointError> {
     watch.begin("moving points", 0.5)?;
-    in_turn(search, Search::shift, [0.5, 0.57], finer, trail, watch)?;
+    in_turn(crew, search, Search::shifted, [0.5, 0.57], finer, trail, watch).await?;
     watch.begin("exchanging points", 0.57)?;
     search.probe();
     let before = search.set.error;
-    exchange(search, [0.57, 0.65], finer, trail, watch)?;
+    exchange(crew, search, [0.57, 0.65], finer, trail, watch).await?;
     watch.begin("replacing points", 0.65)?;
-    in_turn(search, Search::replace, [0.65, 0.7], finer, trail, watch)?;
+    in_turn(crew, search, Search::replaced, [0.65, 0.7], finer, trail, watch).await?;
     if search.set.error < before {
         watch.begin("moving points", 0.7)?;
-        in_turn(search, Search::shift, [0.7, 0.75], finer, trail, watch)?;
+        in_turn(crew, search, Search::shifted, [0.7, 0.75], finer, trail, watch).await?;
     }
     Ok(())
 }
 
 /// Adds some points and takes the same number away, whichever can be spared, if that is for the better. Progress goes
 /// `from` … `to`.
-fn exchange(
-    search: &mut Search,
+async fn exchange(
+    crew: &impl Crew,
+    search: &mut Search<'_>,
     [from, to]: [f64; 2],
     coarse: &Coarse,
-    trail: &mut Trail,
-    watch: &mut Watch,
+    trail: &mut Trail<'_>,
+    watch: &mut Watch<'_>,
 ) -> Result<(), KeyPointError> {
     let before = search.state();
     let old = search.set.members.clone();
     let error = search.set.error;
     for _ in 0..MORE {
-        if search.add(&mut || watch.go_on(from)).is_none() {
-            watch.tell(from)?;
+        watch.tell(from)?;
+        if search.add(crew).await.is_none() {
             break;
         }
     }
-    let middle = 0.5 * (from + to);
     while search.set.members.len() > old.len() {
-        search.remove(&mut || watch.go_on(middle)).ok_or(KeyPointError::Cancelled)?;
+        watch.tell(0.5 * (from + to))?;
+        search.remove(crew).await;
     }
     if search.set.error >= error * (1.0 - WORTH) {
         search.restore(before);
@@ -157,13 +164,14 @@ fn exchange(
 }
 
 /// Replaces or moves points in turn until none can be for the better, while progress goes `from` … `to`.
-fn in_turn<'a>(
+async fn in_turn<'a>(
+    crew: &impl Crew,
     search: &mut Search<'a>,
-    step: fn(&mut Search<'a>, usize, &mut dyn FnMut() -> bool) -> Option<bool>,
+    attempt: fn(&Search<'a>, usize) -> Option<Set>,
     [from, to]: [f64; 2],
     coarse: &Coarse,
-    trail: &mut Trail,
-    watch: &mut Watch,
+    trail: &mut Trail<'_>,
+    watch: &mut Watch<'_>,
 ) -> Result<(), KeyPointError> {
     let count = search.set.members.len();
     let (mut done, mut idle, mut place) = (from, 0, 0);
@@ -171,14 +179,18 @@ fn in_turn<'a>(
         if idle >= count {
             break;
         }
-        done += (to - done) * 0.02;
-        let old = search.set.members[place];
-        let better = step(search, place, &mut || watch.go_on(done)).ok_or(KeyPointError::Cancelled)?;
-        if better {
-            trail.add(coarse, old, search.set.members[place], search.set.error);
+        watch.tell(done)?;
+        let found = crew.until(count - idle, |i| attempt(search, (place + i) % count), Option::is_some).await;
+        done += (to - done) * 0.02 * found.len() as f64;
+        place = (place + found.len()) % count;
+        idle += found.len();
+        if let Some(better) = found.into_iter().next_back().flatten() {
+            let last = (place + count - 1) % count;
+            let old = search.set.members[last];
+            search.accept_instead(last, better);
+            trail.add(coarse, old, search.set.members[last], search.set.error);
+            idle = 0;
         }
-        idle = if better { 0 } else { idle + 1 };
-        place = (place + 1) % count;
     }
     Ok(())
 }

@@ -4,9 +4,9 @@ use super::box_problem::{self, Column, State};
 use super::follow;
 use super::joint;
 use super::levels::{self, Level};
-use super::side_by_side::each;
 use super::surface::Surface;
 use super::{Parameters, Weights, WeightsError};
+use crate::crew::{Crew, Threads, at_once};
 use crate::warning::Warning;
 use glam::DVec3;
 
@@ -48,14 +48,35 @@ impl Biharmonic {
 
     /// The weights of handles, which are vertices of the mesh as given.
     pub fn weights(&self, handles: &[u32], parameters: &Parameters) -> Result<Weights, WeightsError> {
+        at_once(self.weights_by(&Threads, handles, parameters))
+    }
+
+    /// [`Biharmonic::weights`], whose handles a crew shares out.
+    pub async fn weights_by(
+        &self,
+        crew: &impl Crew,
+        handles: &[u32],
+        parameters: &Parameters,
+    ) -> Result<Weights, WeightsError> {
         let places = self.places(handles)?;
-        let columns = each(handles.len(), |j| self.column(&places, j));
+        let columns = crew.each(handles.len(), |j| self.column(&places, j)).await;
         Ok(self.finish(handles, &places, columns, parameters))
     }
 
     /// The weights of handles of which most were in `before`, and so are their weights, or nearly: much faster than
     /// [`Biharmonic::weights`], with the same result.
     pub fn update(&self, before: &Weights, handles: &[u32], parameters: &Parameters) -> Result<Weights, WeightsError> {
+        at_once(self.update_by(&Threads, before, handles, parameters))
+    }
+
+    /// [`Biharmonic::update`], whose handles a crew shares out.
+    pub async fn update_by(
+        &self,
+        crew: &impl Crew,
+        before: &Weights,
+        handles: &[u32],
+        parameters: &Parameters,
+    ) -> Result<Weights, WeightsError> {
         let (found, expected) = (before.vertices(), self.vertices());
         if found != expected {
             return Err(WeightsError::OtherMesh { found, expected });
@@ -63,13 +84,14 @@ impl Biharmonic {
         let places = self.places(handles)?;
         let old_places = self.places(&before.handles)?;
         let old = |place: u32| old_places.iter().position(|&p| p == place).and_then(|i| before.raw.get(i));
-        let columns = each(handles.len(), |j| match old(places[j]) {
+        let updated = |j: usize| match old(places[j]) {
             Some(column) => self.updated(column, &places, &old_places, j),
             None => match self.moved(before, &places, &old_places, j) {
                 Some(column) => self.carried(column, &places, j),
                 None => self.column(&places, j),
             },
-        });
+        };
+        let columns = crew.each(handles.len(), updated).await;
         Ok(self.finish(handles, &places, columns, parameters))
     }
 

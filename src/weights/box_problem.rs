@@ -10,6 +10,7 @@ use super::factor::Solver;
 use super::quadratic::Quadratic;
 use super::{descent, fronts};
 use crate::linalg::principal::Principal;
+use serde::{Deserialize, Serialize};
 
 /// Rounds of guessing, at most, and without fewer corrections than ever before.
 const ROUNDS: usize = 250;
@@ -50,7 +51,7 @@ const ROUNDING: f64 = 4e-15;
 const KEPT_ENTRIES: usize = 500_000;
 
 /// What holds a weight.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub enum State {
     /// Nothing.
     Free,
@@ -74,7 +75,7 @@ impl State {
 }
 
 /// One handle's weights, before rows are divided by their sums.
-#[derive(Clone, Debug, Default)]
+#[derive(Clone, Debug, Default, Serialize, Deserialize)]
 pub struct Column {
     /// The weights, one for each welded vertex.
     pub weights: Vec<f64>,
@@ -84,7 +85,8 @@ pub struct Column {
     pub energy: f64,
     /// See [`super::Weights::kkt_residual`].
     pub residual: f64,
-    /// The last factor, unless it is too large to keep or nothing is likely to be updated.
+    /// The last factor, unless it is too large to keep or to send, or nothing is likely to be updated.
+    #[serde(skip)]
     pub factor: Option<Principal>,
 }
 

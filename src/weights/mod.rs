@@ -29,7 +29,6 @@ mod parameters;
 mod quadratic;
 mod result;
 mod rings;
-mod side_by_side;
 mod surface;
 
 pub use biharmonic::Biharmonic;
