@@ -1,21 +1,24 @@
-//! How long the choice of key points takes, and a pose's fit: natively, on one core, against the paper's letter in the
+//! How long the choice of key points takes, and a pose's fit: natively, on all cores, against the paper's letter in the
 //! same run. The letter takes minutes and so runs once.
 //!
 //! `cargo bench --bench keypoints -- starts dog octopus FILE.npz …` tells instead how much ten starts differ on creatures
-//! and sequences of your choice.
+//! and sequences of your choice; `cargo bench --bench keypoints -- crew` how well the choice divides among workers that
+//! have a core each.
 
 #[path = "../tests/common/npz.rs"]
 mod npz;
 
 use criterion::Criterion;
 use sinew::clock;
-use sinew::keypoints::{KeyPoints, Parameters, fit_all, select, thinned};
+use sinew::crew::{Crew, Shared, at_once};
+use sinew::keypoints::{KeyPoints, Parameters, fit_all, select, select_by, thinned};
 use sinew::mesh::ball::unit_ball;
 use sinew::mesh::laplacian::Laplacian;
 use sinew::observer::Silent;
 use sinew::sequence::Sequence;
 use sinew::skinning::{Fitter, Rig, Rows};
 use sinew::zoo::{self, Recipe};
+use std::cell::RefCell;
 use std::path::Path;
 
 /// Vertices, poses and points of the comparison.
@@ -98,6 +101,49 @@ fn starts(name: &str, sequence: &Sequence, parameters: &Parameters) {
     println!("{name}, ten starts: errors {errors:.5?}, the worst {:.1} % above the best", 100.0 * (high / low - 1.0));
 }
 
+/// One who does everything alone and notes the seconds of every item of every meeting.
+#[derive(Default)]
+struct Alone(RefCell<Vec<Vec<f64>>>);
+
+impl Crew for Alone {
+    async fn until<T: Shared>(
+        &self,
+        count: usize,
+        work: &(dyn Fn(usize) -> T + Sync),
+        enough: &(dyn Fn(&T) -> bool + Sync),
+    ) -> Vec<T> {
+        let (mut results, mut seconds) = (Vec::new(), Vec::new());
+        for item in 0..count {
+            let start = clock::seconds();
+            results.push(work(item));
+            seconds.push(clock::seconds() - start);
+            if results.last().is_some_and(enough) {
+                break;
+            }
+        }
+        self.0.borrow_mut().push(seconds);
+        results
+    }
+}
+
+/// How long a choice would take members who take items in turn, wait for each other, and have a core each.
+fn divided(name: &str, sequence: &Sequence, parameters: &Parameters) {
+    let alone = Alone::default();
+    let start = clock::seconds();
+    at_once(select_by(&alone, sequence, parameters, &mut Silent)).expect("key points");
+    let whole = clock::seconds() - start;
+    let meetings = alone.0.into_inner();
+    let shared: f64 = meetings.iter().flatten().sum();
+    print!("{name}: {whole:.2} s alone, of which {:.0} % can be divided; on the longest path", 100.0 * shared / whole);
+    for members in [2, 4, 8] {
+        let of = |items: &Vec<f64>, member: usize| -> f64 { items.iter().skip(member).step_by(members).sum() };
+        let longest = |items: &Vec<f64>| (0..members).map(|member| of(items, member)).fold(0.0, f64::max);
+        let path = whole - shared + meetings.iter().map(longest).sum::<f64>();
+        print!(" {path:.2} s of {members} members,");
+    }
+    println!(" what they say to each other not counted");
+}
+
 fn against_the_letter(horse: &Sequence, parameters: &Parameters) {
     let (quick_seconds, quick) = run(horse, parameters);
     let (literal_seconds, literal) = run(horse, &Parameters { literal: true, ..parameters.clone() });
@@ -124,6 +170,9 @@ fn main() {
         return;
     }
     let horse = horse();
+    if arguments.first().is_some_and(|first| first == "crew") {
+        return divided("horse", &horse, &parameters);
+    }
     let mut criterion = Criterion::default().configure_from_args();
     by_criterion(&mut criterion, &horse, &parameters);
     a_pose(&mut criterion, &horse, &parameters);

@@ -12,24 +12,24 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 use std::task::{Context, Poll, Waker};
 
 /// What can be sent from one member to another.
-pub trait Shared: Send + Serialize + DeserializeOwned {}
+pub trait Shared: Send + Serialize + DeserializeOwned + 'static {}
 
-impl<T: Send + Serialize + DeserializeOwned> Shared for T {}
+impl<T: Send + Serialize + DeserializeOwned + 'static> Shared for T {}
 
 /// Those who share out work.
 pub trait Crew {
-    /// The results of `work` on 0, 1, … up to the first that is `enough`, that one included, or up to `count`: the same
-    /// whoever does what. Of the items behind it, some may be done in vain.
+    /// The results of `work` on 0, 1, … up to the first that is `enough`, that one included, or up to `count`, whoever does
+    /// what. Of the items behind it, some may be done in vain.
     fn until<T: Shared>(
         &self,
         count: usize,
-        work: impl Fn(usize) -> T + Sync,
-        enough: impl Fn(&T) -> bool + Sync,
+        work: &(dyn Fn(usize) -> T + Sync),
+        enough: &(dyn Fn(&T) -> bool + Sync),
     ) -> impl Future<Output = Vec<T>>;
 
     /// The results of `work` on 0, 1, … up to `count`.
-    fn each<T: Shared>(&self, count: usize, work: impl Fn(usize) -> T + Sync) -> impl Future<Output = Vec<T>> {
-        self.until(count, work, |_| false)
+    fn each<T: Shared>(&self, count: usize, work: &(dyn Fn(usize) -> T + Sync)) -> impl Future<Output = Vec<T>> {
+        self.until(count, work, &|_| false)
     }
 }
 
@@ -40,8 +40,8 @@ impl Crew for Threads {
     async fn until<T: Shared>(
         &self,
         count: usize,
-        work: impl Fn(usize) -> T + Sync,
-        enough: impl Fn(&T) -> bool + Sync,
+        work: &(dyn Fn(usize) -> T + Sync),
+        enough: &(dyn Fn(&T) -> bool + Sync),
     ) -> Vec<T> {
         let threads = threads().min(count);
         let (next, end) = (AtomicUsize::new(0), AtomicUsize::new(count));
@@ -59,7 +59,7 @@ impl Crew for Threads {
                 done.push((item, result));
             }
         };
-        let mut all: Vec<(usize, T)> = if threads <= 1 {
+        let all: Vec<(usize, T)> = if threads <= 1 {
             some()
         } else {
             std::thread::scope(|scope| {
@@ -74,9 +74,9 @@ impl Crew for Threads {
                 all
             })
         };
-        all.sort_by_key(|(item, _)| *item);
-        all.truncate(end.into_inner());
-        all.into_iter().map(|(_, result)| result).collect()
+        let mut results: Vec<Option<T>> = (0..count).map(|_| None).collect();
+        all.into_iter().for_each(|(item, result)| results[item] = Some(result));
+        results.into_iter().take(end.into_inner()).flatten().collect()
     }
 }
 
@@ -105,14 +105,14 @@ mod tests {
 
     #[test]
     fn results_are_in_order() {
-        assert_eq!(at_once(Threads.each(100, |i| i * i)), (0..100).map(|i| i * i).collect::<Vec<_>>());
-        assert!(at_once(Threads.each(0, |i| i)).is_empty());
+        assert_eq!(at_once(Threads.each(100, &|i| i * i)), (0..100).map(|i| i * i).collect::<Vec<_>>());
+        assert!(at_once(Threads.each(0, &|i| i)).is_empty());
     }
 
     #[test]
     fn the_first_that_is_enough_is_the_last() {
         for enough in [0, 1, 7, 99] {
-            let found = at_once(Threads.until(100, |i| i, |&i| i == enough || i == enough + 3));
+            let found = at_once(Threads.until(100, &|i| i, &|&i| i == enough || i == enough + 3));
             assert_eq!(found, (0..=enough).collect::<Vec<_>>());
         }
     }

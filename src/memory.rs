@@ -90,6 +90,12 @@ pub fn check<'a>(
     Err(TooLarge { name: step.name(), needed, held, advice: advice(step, of.sizes(), limit) })
 }
 
+/// How many times a step for `of` and all that is `open` fit.
+pub fn side_by_side<'a>(step: Step, of: &Sequence, open: impl IntoIterator<Item = &'a Sequence>, limit: u64) -> usize {
+    let each = open.into_iter().map(held).fold(step.bytes(of.sizes()), u64::saturating_add);
+    usize::try_from(limit / each.max(1)).unwrap_or(usize::MAX)
+}
+
 /// How many faces, or poses, would fit, to one digit or two.
 fn advice(step: Step, sizes: Sizes, limit: u64) -> String {
     let fits = |sizes: Sizes| {
@@ -156,6 +162,15 @@ mod tests {
         let target = sizes(400_000, 800_000, 0);
         assert!(Step::Faces(target).bytes(sizes(400_000, 800_000, 24)) > LIMIT);
         assert!(Step::Segmentation.bytes(sizes(usize::MAX, usize::MAX, 24)) > LIMIT, "no overflow");
+    }
+
+    #[test]
+    fn as_many_fit_as_each_leaves_room_for() {
+        let still = sequence(0);
+        let each = Step::Weights(2).bytes(still.sizes()) + held(&still);
+        for (limit, count) in [(0, 0), (each - 1, 0), (each, 1), (5 * each + 1, 5)] {
+            assert_eq!(side_by_side(Step::Weights(2), &still, [&still], limit), count);
+        }
     }
 
     #[test]

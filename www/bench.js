@@ -1,4 +1,5 @@
 /** The page's own benchmark: how long a visitor waits. */
+import { most } from './crew.js';
 
 const RUNS = 3;
 /** The figures between which a point is dragged: about 5,000 vertices each. */
@@ -26,14 +27,19 @@ export async function bench(app) {
 
 const median = (list) => [...list].sort((a, b) => a - b)[list.length >> 1];
 
-/** How long the choice of key points takes in the worker. */
+/** How long the choice of key points takes in the worker alone, and in a crew where the machine has cores for one. */
 async function sought(app) {
   await app.openCreature(SOUGHT);
-  const start = performance.now();
-  const run = await app.engine.call('keypoints', { parameters: { ...app.about.keypoints, points: POINTS } });
   const { vertices, poses } = app.sequence.sizes;
-  const name = `${run.key_points.length} key points, ${vertices} vertices × ${poses} poses`;
-  return [{ name, milliseconds: performance.now() - start }];
+  const rows = [];
+  for (const crew of new Set([1, most()])) {
+    const start = performance.now();
+    const run = await app.engine.call('keypoints', { parameters: { ...app.about.keypoints, points: POINTS }, crew });
+    const who = crew === 1 ? '' : ` by ${crew} workers`;
+    const name = `${run.key_points.length} key points, ${vertices} vertices × ${poses} poses${who}`;
+    rows.push({ name, milliseconds: performance.now() - start });
+  }
+  return rows;
 }
 
 /** How long the motion takes to follow a point that is dragged over the target: in the engine, and until the page has it. */

@@ -2,10 +2,10 @@
  * The page's side of the worker.
  *
  * The page sends `{id, operation, …}` and hears `{id, progress: {stage, done}}` any number of times, then one of
- * `{id, result}`, `{id, error}` (a sentence; the engine goes on) or `{id, crash, memory}` (the engine is broken, and how
- * many bytes it had). To cancel is to end the worker. A new one starts from the module that is compiled already, gets
- * back the open meshes, which the page keeps, and then the questions that were waiting; so a cancel or a crash costs one
- * step and nothing else.
+ * `{id, result, helped}` (and how many results came from helpers so far), `{id, error}` (a sentence; the engine goes on) or
+ * `{id, crash, memory}` (the engine is broken, and how many bytes it had). To cancel is to end the worker. A new one starts
+ * from the module that is compiled already, gets back the open meshes, which the page keeps, and then the questions that
+ * were waiting; so a cancel or a crash costs one step and nothing else.
  */
 
 import { bytes } from './format.js';
@@ -31,6 +31,8 @@ export class Engine {
     /** What a new worker must know: by the operation that gives it back. @type {Map<string, object>} */
     this.kept = new Map();
     this.alive = false;
+    /** How many results the worker got from helpers, see crew.js. */
+    this.helped = 0;
     /** What the engine says about itself: default parameters and options, creatures. */
     this.about = this.#start();
   }
@@ -89,7 +91,7 @@ export class Engine {
     return about;
   }
 
-  #hear({ id, progress, result, error, crash, memory }) {
+  #hear({ id, progress, result, helped, error, crash, memory }) {
     const call = this.pending.get(id);
     if (!call) return;
     if (progress) {
@@ -101,7 +103,10 @@ export class Engine {
       this.pending.set(id, call);
       this.#broken(crash, memory);
     } else if (error !== undefined) call.reject(new Error(error));
-    else call.resolve(result);
+    else {
+      this.helped = helped;
+      call.resolve(result);
+    }
   }
 
   #broken(cause, memory = 0) {

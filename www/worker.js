@@ -3,6 +3,8 @@
  * one at a time and in order. See engine.js for the messages.
  */
 import init, { Engine } from '../pkg/worker.js';
+import { ALONE, Leader, most } from './crew.js';
+import { shared } from './shared.js';
 
 /** Progress is told at most this often, in milliseconds. */
 const PROGRESS_EVERY = 60;
@@ -11,11 +13,14 @@ const PROGRESS_EVERY = 60;
 const BY_FACES = new Set(['gradients', 'posed']);
 
 let engine;
+/** The engine's code, for helpers. @type {WebAssembly.Module} */
+let code;
 /** What the engine has of the browser's memory. @type {WebAssembly.Memory} */
 let memory;
 
 const operations = {
   start: async ({ module }) => {
+    code = module;
     ({ memory } = await init({ module_or_path: module }));
     engine = new Engine();
     return Engine.about();
@@ -27,13 +32,10 @@ const operations = {
   parts: ({ parameters, parts }, progress) => engine.parts(parameters, parts, progress),
   export: ({ labels, colours }) => engine.export(labels, colours),
   export_rigid: ({ labels }) => engine.export_rigid(labels),
-  keypoints: ({ parameters }, progress) => engine.keypoints(parameters, progress),
-  fit: ({ points, parameters }) => engine.fit(points, parameters),
   target: ({ files, recipe, options }) => (recipe ? engine.target_zoo(recipe) : engine.target(files, options)),
   restore_target: ({ kept }) => engine.restore_target(kept),
   drop_target: () => engine.drop_target(),
   propose: ({ points, known }) => engine.propose(points, known),
-  target_weights: ({ points }) => engine.target_weights(points),
   landmarks: ({ source, target }) => Engine.landmarks(source, target),
   transfer: ({ pairs, parameters, quick }, progress) => (BY_FACES.has(parameters.method)
     ? engine.transfer_faces(pairs, parameters, progress) : engine.transfer(pairs, parameters, quick, progress)),
@@ -41,20 +43,54 @@ const operations = {
   export_transfer: ({ form }) => engine.export_transfer(form),
 };
 
+for (const operation of Object.keys(shared)) {
+  operations[operation] = (payload, progress) => together(operation, payload, progress);
+}
+
+/** How many results came from helpers. */
+let helped = 0;
+
+/** Runs an operation with as many helpers as it is worth; `crew` in the payload is the most members there may be. */
+async function together(operation, payload, progress) {
+  const { members, run } = shared[operation];
+  const size = members(engine, payload, payload.crew ?? most());
+  if (size === 1) return run(engine, payload, progress, ALONE);
+  const crew = new Leader({ module: code, kept: engine.kept(), operation, payload }, size);
+  try {
+    return await run(engine, payload, progress, crew);
+  } finally {
+    helped += crew.helped;
+    crew.end();
+  }
+}
+
 let queue = Promise.resolve();
+/** The message that is being answered. */
+let current;
 self.addEventListener('message', ({ data }) => {
   queue = queue.then(() => answer(data));
 });
 
 async function answer({ id, operation, ...payload }) {
+  current = id;
   try {
     const result = await operations[operation](payload, progressOf(id));
-    self.postMessage({ id, result }, buffersOf(result));
+    self.postMessage({ id, result, helped }, buffersOf(result));
   } catch (error) {
     // The engine throws sentences. Anything else, such as “unreachable”, means that it is broken for good.
     if (typeof error === 'string') self.postMessage({ id, error });
-    else self.postMessage({ id, crash: String(error), memory: memory?.buffer.byteLength ?? 0 });
+    else crashed(String(error));
   }
+}
+
+// What breaks between two turns of an operation is caught nowhere else.
+self.addEventListener('error', (event) => {
+  event.preventDefault();
+  crashed(event.message);
+});
+
+function crashed(crash) {
+  self.postMessage({ id: current, crash, memory: memory?.buffer.byteLength ?? 0 });
 }
 
 function progressOf(id) {

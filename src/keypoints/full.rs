@@ -5,7 +5,7 @@ use super::surface::Surface;
 use crate::crew::Crew;
 use crate::sequence::Sequence;
 use crate::skinning::{Fit, FitParameters, Fitter, Rig, Rows, clusters};
-use crate::weights::{self, Biharmonic, Weights, WeightsError};
+use crate::weights::{Biharmonic, Weights, WeightsError};
 use glam::{DAffine3, DVec3};
 
 /// A sequence, ready for any set of points.
@@ -38,10 +38,9 @@ impl<'a> Full<'a> {
         points: &[u32],
         before: Option<&Weights>,
     ) -> Result<Weights, WeightsError> {
-        let parameters = weights::Parameters::default();
         match before {
-            Some(before) => self.biharmonic.update_by(crew, before, points, &parameters).await,
-            None => self.biharmonic.weights_by(crew, points, &parameters).await,
+            Some(before) => self.biharmonic.update_by(crew, before, points).await,
+            None => self.biharmonic.weights_by(crew, points).await,
         }
     }
 

@@ -118,10 +118,9 @@ impl<'a> Search<'a> {
         let ranked = self.ranked(&self.set, &free);
         let [some, few] = ADDING;
         let some = &ranked[..some.min(ranked.len())];
-        let errors = crew.each(some.len(), |i| self.error(&self.with(&self.set, some[i]))).await;
-        let mut tried: Vec<(f64, Probed)> = errors.into_iter().zip(some.iter().copied()).collect();
-        tried.sort_by(|a, b| a.0.total_cmp(&b.0).then(a.1.0.cmp(&b.1.0)));
-        let refined = crew.each(few.min(tried.len()), |i| self.refined(self.with(&self.set, tried[i].1))).await;
+        let errors = crew.each(some.len(), &|i| self.error(&self.with(&self.set, some[i]))).await;
+        let mut tried = ascending(errors.into_iter().zip(some.iter().copied()).collect());
+        let refined = crew.each(few.min(tried.len()), &|i| self.refined(self.with(&self.set, tried[i].1))).await;
         tried.iter_mut().zip(&refined).for_each(|(tried, set)| tried.0 = set.error);
         let best = refined.into_iter().reduce(|best, set| if set.error < best.error { set } else { best })?;
         let tried = tried.iter().map(|&(error, (vertex, _))| self.tried(vertex, error)).collect();
@@ -161,8 +160,7 @@ impl<'a> Search<'a> {
         let base = self.without(&self.set, place);
         let ranked = self.ranked(&base, others);
         let ranked = ranked.into_iter().take(pass[0]);
-        let mut tried: Vec<(f64, Probed)> = ranked.map(|one| (self.error(&self.with(&base, one)), one)).collect();
-        tried.sort_by(|a, b| a.0.total_cmp(&b.0).then(a.1.0.cmp(&b.1.0)));
+        let tried = ascending(ranked.map(|one| (self.error(&self.with(&base, one)), one)).collect());
         let hopeful = tried.iter().take(pass[1]).filter(|(error, _)| *error <= self.set.error);
         let refined = hopeful.map(|&(_, one)| self.refined(self.with(&base, one)));
         let best = refined.reduce(|best, set| if set.error < best.error { set } else { best })?;
@@ -202,7 +200,7 @@ impl<'a> Search<'a> {
         if set.members.len() < 2 {
             return None;
         }
-        let errors = crew.each(set.members.len(), |place| self.error(&self.without(set, place))).await;
+        let errors = crew.each(set.members.len(), &|place| self.error(&self.without(set, place))).await;
         (0..errors.len()).min_by(|&a, &b| errors[a].total_cmp(&errors[b]))
     }
 
@@ -338,14 +336,19 @@ impl<'a> Search<'a> {
     fn ranked<'f>(&self, base: &Set, others: &[Probed<'f>]) -> Vec<Probed<'f>> {
         let leftover = Leftover::new(self.coarse, &base.members, &self.weights(base), self.fit.hold);
         let free = others.iter().filter(|(v, _)| !self.set.members.contains(v));
-        let mut gains: Vec<(f64, Probed)> = free.map(|&one| (leftover.gain(one.0, one.1), one)).collect();
-        gains.sort_by(|a, b| b.0.total_cmp(&a.0).then(a.1.0.cmp(&b.1.0)));
-        gains.into_iter().map(|(_, one)| one).collect()
+        let ranked = ascending(free.map(|&one| (-leftover.gain(one.0, one.1), one)).collect());
+        ranked.into_iter().map(|(_, one)| one).collect()
     }
 
     fn tried(&self, vertex: u32, error: f64) -> Tried {
         Tried { vertex: self.coarse.surface.origin[vertex as usize], error }
     }
+}
+
+/// Sorted by the number that comes with each.
+fn ascending(mut list: Vec<(f64, Probed)>) -> Vec<(f64, Probed)> {
+    list.sort_by(|a, b| a.0.total_cmp(&b.0).then(a.1.0.cmp(&b.1.0)));
+    list
 }
 
 /// All but one.

@@ -180,7 +180,7 @@ async fn in_turn<'a>(
             break;
         }
         watch.tell(done)?;
-        let found = crew.until(count - idle, |i| attempt(search, (place + i) % count), Option::is_some).await;
+        let found = crew.until(count - idle, &|i| attempt(search, (place + i) % count), &Option::is_some).await;
         done += (to - done) * 0.02 * found.len() as f64;
         place = (place + found.len()) % count;
         idle += found.len();

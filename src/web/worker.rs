@@ -3,8 +3,9 @@
 //! Everything that goes in or out is a plain object; big fields are typed arrays, so that the page can take them
 //! over without a copy. Coordinates cross as `f32`, and the engine computes on exactly what it hands out: a
 //! sequence that the page gives back after a restart ([`Engine::restore`]) yields the same bytes again.
-//! An error is one sentence for a person, thrown as a string.
+//! An error is one sentence for a person, thrown as a string. What takes long is shared out to a crew ([`crew::Workers`]).
 
+mod crew;
 mod faces;
 mod moving;
 mod pair;
@@ -118,6 +119,18 @@ impl Engine {
     pub fn restore(&mut self, kept: JsValue) -> Result<(), JsValue> {
         self.replace(kept_sequence(kept)?);
         Ok(())
+    }
+
+    /// What another engine must know to do the same: `{source, target}`, for [`Engine::restore`] and
+    /// [`Engine::restore_target`], each undefined if there is none.
+    pub fn kept(&self) -> Reply {
+        let reply: JsValue = Object::new().into();
+        for (name, sequence) in [("source", &self.sequence), ("target", &self.target)] {
+            if let Some(sequence) = sequence {
+                put(&reply, name, &describe(sequence, &[], None, &[])?)?;
+            }
+        }
+        Ok(reply)
     }
 
     /// Segments what is open, with [`Parameters`] in their serde form; `progress` is called with the stage and the

@@ -48,51 +48,61 @@ impl Biharmonic {
 
     /// The weights of handles, which are vertices of the mesh as given.
     pub fn weights(&self, handles: &[u32], parameters: &Parameters) -> Result<Weights, WeightsError> {
-        at_once(self.weights_by(&Threads, handles, parameters))
+        let places = self.places(handles)?;
+        let columns = at_once(self.columns(&Threads, &places));
+        Ok(self.finish(handles, &places, columns, parameters))
     }
 
-    /// [`Biharmonic::weights`], whose handles a crew shares out.
-    pub async fn weights_by(
-        &self,
-        crew: &impl Crew,
-        handles: &[u32],
-        parameters: &Parameters,
-    ) -> Result<Weights, WeightsError> {
+    /// [`Biharmonic::weights`] by the default parameters, their handles shared out by a crew.
+    pub async fn weights_by(&self, crew: &impl Crew, handles: &[u32]) -> Result<Weights, WeightsError> {
         let places = self.places(handles)?;
-        let columns = crew.each(handles.len(), |j| self.column(&places, j)).await;
-        Ok(self.finish(handles, &places, columns, parameters))
+        let columns = self.columns(crew, &places).await;
+        Ok(self.finish(handles, &places, columns, &Parameters::default()))
     }
 
     /// The weights of handles of which most were in `before`, and so are their weights, or nearly: much faster than
     /// [`Biharmonic::weights`], with the same result.
     pub fn update(&self, before: &Weights, handles: &[u32], parameters: &Parameters) -> Result<Weights, WeightsError> {
-        at_once(self.update_by(&Threads, before, handles, parameters))
+        let places = self.places_like(before, handles)?;
+        let columns = at_once(self.columns_like(&Threads, before, &places));
+        Ok(self.finish(handles, &places[0], columns, parameters))
     }
 
-    /// [`Biharmonic::update`], whose handles a crew shares out.
+    /// [`Biharmonic::update`] by the default parameters, their handles shared out by a crew.
     pub async fn update_by(
         &self,
         crew: &impl Crew,
         before: &Weights,
         handles: &[u32],
-        parameters: &Parameters,
     ) -> Result<Weights, WeightsError> {
+        let places = self.places_like(before, handles)?;
+        let columns = self.columns_like(crew, before, &places).await;
+        Ok(self.finish(handles, &places[0], columns, &Parameters::default()))
+    }
+
+    async fn columns(&self, crew: &impl Crew, places: &[u32]) -> Vec<Column> {
+        crew.each(places.len(), &|j| self.column(places, j)).await
+    }
+
+    async fn columns_like(&self, crew: &impl Crew, before: &Weights, [places, old]: &[Vec<u32>; 2]) -> Vec<Column> {
+        let known = |place: u32| old.iter().position(|&p| p == place).and_then(|i| before.raw.get(i));
+        let column = |j: usize| match known(places[j]) {
+            Some(column) => self.updated(column, places, old, j),
+            None => match self.moved(before, places, old, j) {
+                Some(column) => self.carried(column, places, j),
+                None => self.column(places, j),
+            },
+        };
+        crew.each(places.len(), &column).await
+    }
+
+    /// The welded vertices of handles, and of those of former weights.
+    fn places_like(&self, before: &Weights, handles: &[u32]) -> Result<[Vec<u32>; 2], WeightsError> {
         let (found, expected) = (before.vertices(), self.vertices());
         if found != expected {
             return Err(WeightsError::OtherMesh { found, expected });
         }
-        let places = self.places(handles)?;
-        let old_places = self.places(&before.handles)?;
-        let old = |place: u32| old_places.iter().position(|&p| p == place).and_then(|i| before.raw.get(i));
-        let updated = |j: usize| match old(places[j]) {
-            Some(column) => self.updated(column, &places, &old_places, j),
-            None => match self.moved(before, &places, &old_places, j) {
-                Some(column) => self.carried(column, &places, j),
-                None => self.column(&places, j),
-            },
-        };
-        let columns = crew.each(handles.len(), updated).await;
-        Ok(self.finish(handles, &places, columns, parameters))
+        Ok([self.places(handles)?, self.places(&before.handles)?])
     }
 
     /// The welded vertices of handles.

@@ -143,6 +143,30 @@ fn a_crashed_engine_costs_one_question_and_nothing_else() {
 
 #[test]
 #[ignore = "drives the built page in Chromium: run by `cargo xtask test`"]
+fn a_crew_of_workers_comes_to_the_same_answer_as_one() {
+    let mut page = opened(Backend::WebGl2, Screen::Still, SMALL);
+    let answers = page.evaluate_within(
+        "(async () => {
+            const { engine, about } = sinew.app;
+            const told = [];
+            for (const crew of [1, 3]) {
+                const parameters = { ...about.keypoints, points: 6 };
+                const run = await engine.call('keypoints', { parameters, crew });
+                told.push({ points: [...run.key_points], weights: [...run.weights], helped: engine.helped });
+            }
+            return told;
+        })()",
+        120.0,
+    );
+    let [alone, together] = [&answers[0], &answers[1]];
+    assert_eq!(alone["points"], together["points"]);
+    assert_eq!(alone["weights"], together["weights"]);
+    assert_eq!(alone["helped"], 0);
+    assert!(together["helped"].as_u64() > Some(0), "no helper did anything");
+}
+
+#[test]
+#[ignore = "drives the built page in Chromium: run by `cargo xtask test`"]
 fn a_lost_picture_comes_back_in_the_middle_of_a_stage() {
     let mut page = opened(Backend::WebGl2, Screen::Still, SMALL);
     page.evaluate("sinew.app.setStep('keypoints')");

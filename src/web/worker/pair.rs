@@ -1,13 +1,14 @@
 //! Messages about the target: opening it, and where the key points lie on it.
 
 use super::Engine;
+use super::crew::Workers;
 use super::sequences::{describe, kept_sequence, rounded};
 use super::values::{Reply, parsed, plain, put, read_files, sentence, single};
 use crate::import::{self, Options};
 use crate::memory::Step;
 use crate::sequence::Sequence;
 use crate::transfer::propose::Proposer;
-use crate::weights::{Biharmonic, Parameters};
+use crate::weights::Biharmonic;
 use crate::zoo::{self, Recipe};
 use js_sys::{Array, Object, Uint32Array};
 use wasm_bindgen::prelude::*;
@@ -66,7 +67,7 @@ impl Engine {
     }
 
     /// The weights of some vertices of the target, #V rows × the number of them.
-    pub fn target_weights(&mut self, handles: &[u32]) -> Reply {
+    pub async fn target_weights(&mut self, handles: &[u32], crew: &Workers) -> Reply {
         let retained = self.target_field.take();
         let target = self.open_target()?;
         let field = match retained {
@@ -76,7 +77,7 @@ impl Engine {
                 Biharmonic::new(target.faces(), target.reference()).map_err(sentence)?
             }
         };
-        let weights = field.weights(handles, &Parameters::default()).map_err(sentence)?;
+        let weights = field.weights_by(crew, handles).await.map_err(sentence)?;
         self.target_field = Some(field);
         Ok(single(&weights.values).into())
     }

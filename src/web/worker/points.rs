@@ -1,6 +1,7 @@
 //! Messages about key points.
 
 use super::Engine;
+use super::crew::Workers;
 use super::values::{Reply, parsed, plain, put, sentence, single};
 use super::watcher;
 use crate::keypoints::{self, KeyPoints, Parameters, Rounds};
@@ -14,10 +15,12 @@ use wasm_bindgen::prelude::*;
 #[wasm_bindgen]
 impl Engine {
     /// Finds the key points of what is open, with [`Parameters`] in their serde form.
-    pub fn keypoints(&self, parameters: JsValue, progress: &Function) -> Reply {
+    pub async fn keypoints(&self, parameters: JsValue, progress: &Function, crew: &Workers) -> Reply {
         let parameters: Parameters = parsed(parameters)?;
         self.room_for(Step::KeyPoints(parameters.points.unwrap_or(parameters.max)), self.open_sequence()?)?;
-        let found = keypoints::select(self.open_sequence()?, &parameters, &mut watcher(progress)).map_err(sentence)?;
+        let sequence = self.open_sequence()?;
+        let found =
+            keypoints::select_by(crew, sequence, &parameters, &mut watcher(progress)).await.map_err(sentence)?;
         let reply = describe(&found.weights, &found.groups, &found.fits, &found.rounds)?;
         put(&reply, "key_points", &Uint32Array::from(found.key_points.as_slice()))?;
         put(&reply, "errors", &Float64Array::from(found.errors.as_slice()))?;
@@ -30,10 +33,11 @@ impl Engine {
     }
 
     /// What follows from points given by hand: weights, groups, the error.
-    pub fn fit(&self, points: &[u32], parameters: JsValue) -> Reply {
+    pub async fn fit(&self, points: &[u32], parameters: JsValue, crew: &Workers) -> Reply {
         let parameters: Parameters = parsed(parameters)?;
         self.room_for(Step::KeyPoints(points.len()), self.open_sequence()?)?;
-        let fitted = keypoints::fit_all(self.open_sequence()?, points, &parameters).map_err(sentence)?;
+        let sequence = self.open_sequence()?;
+        let fitted = keypoints::fit_all_by(crew, sequence, points, &parameters).await.map_err(sentence)?;
         let reply = describe(&fitted.weights, &fitted.groups, &fitted.fits, &fitted.rounds)?;
         put(&reply, "error", &fitted.error.into())?;
         Ok(reply)
