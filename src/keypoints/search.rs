@@ -31,6 +31,9 @@ const REPLACING: [usize; 2] = [12, 1];
 const MOVING: [usize; 2] = [4, 1];
 const RINGS: usize = 2;
 
+/// Fields that are estimated one after the other: they have some of their factors in common.
+const PROBES: usize = 8;
+
 /// A replacement must gain more than this share of the error…
 pub const WORTH: f64 = 1e-4;
 
@@ -68,9 +71,9 @@ pub struct Search<'a> {
 
 impl<'a> Search<'a> {
     /// Starts from the first candidate (§3.5), which matters little, as it will be replaced.
-    pub fn new(coarse: &'a Coarse, fit: FitParameters) -> Self {
+    pub async fn new(coarse: &'a Coarse, fit: FitParameters, crew: &impl Crew) -> Self {
         let mut search = Self::from_points(coarse, fit, coarse.candidates.get(..1).unwrap_or_default());
-        search.probe();
+        search.probe(crew).await;
         search
     }
 
@@ -91,14 +94,18 @@ impl<'a> Search<'a> {
     }
 
     /// Estimates the candidates' fields anew: while the set changes, they grow worse.
-    pub fn probe(&mut self) {
+    pub async fn probe(&mut self, crew: &impl Crew) {
         let Set { members, fields, .. } = &self.set;
-        let mut scratch = Scratch::default();
-        let probe = |&c: &u32| match members.iter().position(|&m| m == c) {
-            Some(place) => fields[place].clone(),
-            None => self.coarse.energy.estimate(c, members, &mut scratch),
+        let some: Vec<&[u32]> = self.coarse.candidates.chunks(PROBES).collect();
+        let probes = |i: usize| -> Vec<Field> {
+            let mut scratch = Scratch::default();
+            let probe = |&c: &u32| match members.iter().position(|&m| m == c) {
+                Some(place) => fields[place].clone(),
+                None => self.coarse.energy.estimate(c, members, &mut scratch),
+            };
+            some[i].iter().map(probe).collect()
         };
-        self.probes = self.coarse.candidates.iter().map(probe).collect();
+        self.probes = crew.each(some.len(), &probes).await.concat();
     }
 
     /// What [`Search::restore`] goes back to.

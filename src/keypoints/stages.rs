@@ -64,7 +64,7 @@ pub async fn run(
     let mut steps = Vec::new();
     let mut trail = Trail { surface, replacements: Vec::new() };
     watch.begin("adding points", 0.1)?;
-    let mut search = Search::new(&coarse, parameters.fit());
+    let mut search = Search::new(&coarse, parameters.fit(), crew).await;
     let mut curve = vec![search.set.error];
     let mut more = !is_enough(parameters, &curve);
     loop {
@@ -117,7 +117,7 @@ async fn settle<'a>(
     watch.begin("moving points", 0.5)?;
     in_turn(crew, search, Search::shifted, [0.5, 0.57], finer, trail, watch).await?;
     watch.begin("exchanging points", 0.57)?;
-    search.probe();
+    search.probe(crew).await;
     let before = search.set.error;
     exchange(crew, search, [0.57, 0.65], finer, trail, watch).await?;
     watch.begin("replacing points", 0.65)?;
