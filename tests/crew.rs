@@ -7,13 +7,16 @@ use sinew::observer::Silent;
 use sinew::sequence::Sequence;
 use sinew::zoo::{self, Recipe};
 use std::cell::Cell;
-use std::collections::HashMap;
+use std::collections::BTreeMap;
 use std::sync::{Condvar, Mutex};
 
-/// What members have handed in, by meeting and item: bytes, and whether that is enough.
+/// The bytes of a result, and whether it is enough.
+type HandedIn = (Vec<u8>, bool);
+
+/// What members have handed in, by meeting and item.
 #[derive(Default)]
 struct Table {
-    handed_in: Mutex<HashMap<(usize, usize), (Vec<u8>, bool)>>,
+    handed_in: Mutex<BTreeMap<(usize, usize), HandedIn>>,
     changed: Condvar,
 }
 

@@ -25,10 +25,10 @@ use serde::{Deserialize, Serialize};
 const ADDING: [usize; 2] = [20, 3];
 
 /// The same when one is replaced.
-const REPLACING: [usize; 2] = [12, 1];
+const REPLACING: usize = 12;
 
 /// The same when one is moved to a vertex at most so many edges away.
-const MOVING: [usize; 2] = [4, 1];
+const MOVING: usize = 4;
 const RINGS: usize = 2;
 
 /// Fields that are estimated one after the other: they have some of their factors in common.
@@ -161,19 +161,17 @@ impl<'a> Search<'a> {
         self.instead(place, &near, MOVING)
     }
 
-    /// The set with the best of others in place of the point at `place`, if it is better;
-    /// the new point comes last. `pass` is how many of them pass the first and the second sieve.
-    fn instead(&self, place: usize, others: &[Probed], pass: [usize; 2]) -> Option<Set> {
+    /// The set with the best of others in place of the point at `place`, if it is better; the new point comes last. So many
+    /// of them `pass` the first sieve, and one the second.
+    fn instead(&self, place: usize, others: &[Probed], pass: usize) -> Option<Set> {
         let base = self.without(&self.set, place);
-        let ranked = self.ranked(&base, others);
-        let ranked = ranked.into_iter().take(pass[0]);
-        let tried = ascending(ranked.map(|one| (self.error(&self.with(&base, one)), one)).collect());
-        let hopeful = tried.iter().take(pass[1]).filter(|(error, _)| *error <= self.set.error);
-        let refined = hopeful.map(|&(_, one)| self.refined(self.with(&base, one)));
-        let best = refined.reduce(|best, set| if set.error < best.error { set } else { best })?;
+        let tried = self.ranked(&base, others).into_iter().take(pass);
+        let tried = ascending(tried.map(|one| (self.error(&self.with(&base, one)), one)).collect());
+        let &(_, best) = tried.first().filter(|(error, _)| *error <= self.set.error)?;
+        let better = self.refined(self.with(&base, best));
         // New groups change the error a little: only what is better with them is an improvement.
-        let best = self.regrouped(best);
-        (best.error < self.set.error * (1.0 - WORTH) - ROUNDING).then_some(best)
+        let better = self.regrouped(better);
+        (better.error < self.set.error * (1.0 - WORTH) - ROUNDING).then_some(better)
     }
 
     /// Takes a set over whose last point replaces that at `place`.
@@ -338,8 +336,7 @@ impl<'a> Search<'a> {
         sum / surface.poses.len().max(1) as f64
     }
 
-    /// Of `others`, those that are not in the set, by how much they take from what
-    /// `base` leaves over, the most first.
+    /// Of `others`, those that are not in the set, by how much they take from what `base` leaves over, the most first.
     fn ranked<'f>(&self, base: &Set, others: &[Probed<'f>]) -> Vec<Probed<'f>> {
         let leftover = Leftover::new(self.coarse, &base.members, &self.weights(base), self.fit.hold);
         let free = others.iter().filter(|(v, _)| !self.set.members.contains(v));
