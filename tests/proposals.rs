@@ -7,9 +7,12 @@ mod npz;
 mod proposals;
 
 use glam::DVec3;
-use proposals::{Case, Draw, Errors, animal_case, body_cases, creature, mean, measure, most, proposer, zoo_case};
+use proposals::{
+    Case, Draw, Errors, animal_case, between, body_cases, creature, mean, measure, most, proposer, zoo_case,
+};
 use sinew::sequence::Sequence;
 use sinew::transfer::propose::Proposer;
+use sinew::zoo::{self, Recipe};
 
 /// Checks the mean over draws, in % of the diagonal, against `(given, median, worst)`, and that no side is swapped from
 /// three given points on.
@@ -57,6 +60,21 @@ fn check_advised(case: &Case, worst: f64) {
 fn creatures_of_one_build() {
     check(&zoo_case("person", "person-arms-out"), &[(3, 3.0, 8.0)]);
     check(&zoo_case("horse", "camel"), &[(3, 4.0, 10.0)]);
+}
+
+#[test]
+fn creatures_of_other_proportions() {
+    let usual = Recipe { faces: 12_000, poses: 1, exact: false, ..Recipe::default() };
+    for other in [
+        Recipe { name: "person".into(), head: 1.4, legs: 1.5, arms: 0.7, ..usual.clone() },
+        Recipe { name: "horse".into(), head: 1.5, neck: 1.6, legs: 1.6, ..usual.clone() },
+        Recipe { name: "dog".into(), build: 1.4, head: 0.7, legs: 1.7, tail: 0.6, ..usual.clone() },
+        Recipe { name: "bird".into(), build: 0.7, neck: 1.4, legs: 1.7, ..usual.clone() },
+    ] {
+        let other = zoo::make(&other).expect("a creature of that name");
+        let own = creature(other.sequence.name());
+        check(&between(own, other), &[(0, 4.0, 10.0), (3, 4.0, 10.0)]);
+    }
 }
 
 #[test]

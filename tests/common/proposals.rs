@@ -22,7 +22,11 @@ pub fn creature(name: &str) -> Creature {
 }
 
 pub fn zoo_case(a: &str, b: &str) -> Case {
-    let (a, b) = (creature(a), creature(b));
+    between(creature(a), creature(b))
+}
+
+/// Two creatures.
+pub fn between(a: Creature, b: Creature) -> Case {
     let name = format!("zoo {} > {}", a.sequence.name(), b.sequence.name());
     let pairs = zoo::correspondences(&a, &b, 60);
     let pairs = pairs.into_iter().map(|(s, t)| (s, b.sequence.reference()[t as usize])).collect();
