@@ -7,7 +7,9 @@
 
 use serde::Serialize;
 use serde::de::DeserializeOwned;
+use std::num::NonZero;
 use std::pin::pin;
+use std::sync::OnceLock;
 use std::sync::atomic::{AtomicUsize, Ordering};
 use std::task::{Context, Poll, Waker};
 
@@ -91,12 +93,11 @@ pub fn at_once<T>(work: impl Future<Output = T>) -> T {
     }
 }
 
+/// How many threads are worth it; asked once, for the system reads files to know.
 fn threads() -> usize {
-    if cfg!(target_arch = "wasm32") {
-        1
-    } else {
-        std::thread::available_parallelism().map_or(1, std::num::NonZero::get)
-    }
+    static THREADS: OnceLock<usize> = OnceLock::new();
+    let cores = || std::thread::available_parallelism().map_or(1, NonZero::get);
+    if cfg!(target_arch = "wasm32") { 1 } else { *THREADS.get_or_init(cores) }
 }
 
 #[cfg(test)]

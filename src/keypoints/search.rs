@@ -71,7 +71,7 @@ pub struct Search<'a> {
 
 impl<'a> Search<'a> {
     /// Starts from the first candidate (§3.5), which matters little, as it will be replaced.
-    pub async fn new(coarse: &'a Coarse, fit: FitParameters, crew: &impl Crew) -> Self {
+    pub async fn new(crew: &impl Crew, coarse: &'a Coarse, fit: FitParameters) -> Self {
         let mut search = Self::from_points(coarse, fit, coarse.candidates.get(..1).unwrap_or_default());
         search.probe(crew).await;
         search
@@ -137,7 +137,7 @@ impl<'a> Search<'a> {
 
     /// Takes away the point that can be spared best; `None` if there is only one.
     pub async fn remove(&mut self, crew: &impl Crew) -> Option<()> {
-        let place = self.spared(&self.set, crew).await?;
+        let place = self.spared(crew, &self.set).await?;
         let probes = self.released(place);
         let rest = self.refined(self.without(&self.set, place));
         self.set = self.regrouped(rest);
@@ -201,7 +201,7 @@ impl<'a> Search<'a> {
     }
 
     /// The place of the point that can be spared best; `None` if there is only one.
-    async fn spared(&self, set: &Set, crew: &impl Crew) -> Option<usize> {
+    async fn spared(&self, crew: &impl Crew, set: &Set) -> Option<usize> {
         if set.members.len() < 2 {
             return None;
         }
@@ -214,7 +214,7 @@ impl<'a> Search<'a> {
     pub async fn order(&self, crew: &impl Crew) -> (Vec<u32>, Vec<f64>) {
         let mut set = self.set.clone();
         let (mut order, mut errors) = (Vec::new(), vec![set.error]);
-        while let Some(gone) = self.spared(&set, crew).await {
+        while let Some(gone) = self.spared(crew, &set).await {
             order.push(set.members[gone]);
             set = self.regrouped(self.refined(self.without(&set, gone)));
             errors.push(set.error);

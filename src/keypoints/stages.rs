@@ -64,7 +64,7 @@ pub async fn run(
     let mut steps = Vec::new();
     let mut trail = Trail { surface, replacements: Vec::new() };
     watch.begin("adding points", 0.1)?;
-    let mut search = Search::new(&coarse, parameters.fit(), crew).await;
+    let mut search = Search::new(crew, &coarse, parameters.fit()).await;
     let mut curve = vec![search.set.error];
     let mut more = !is_enough(parameters, &curve);
     loop {
@@ -150,7 +150,9 @@ async fn exchange(
     }
     while search.set.members.len() > old.len() {
         watch.tell(0.5 * (from + to))?;
-        search.remove(crew).await;
+        if search.remove(crew).await.is_none() {
+            break;
+        }
     }
     if search.set.error >= error * (1.0 - WORTH) {
         search.restore(before);
@@ -181,7 +183,7 @@ async fn in_turn<'a>(
         }
         watch.tell(done)?;
         let found = crew.until(count - idle, &|i| attempt(search, (place + i) % count), &Option::is_some).await;
-        done += (to - done) * 0.02 * found.len() as f64;
+        done += (to - done) * (0.02 * found.len() as f64).min(1.0);
         place = (place + found.len()) % count;
         idle += found.len();
         if let Some(better) = found.into_iter().next_back().flatten() {
