@@ -27,7 +27,7 @@ use crate::weights::Biharmonic;
 use crate::zoo::{self, Recipe};
 use glam::DVec3;
 use js_sys::{Array, Function, Object, Uint8Array, Uint32Array};
-use sequences::{describe, kept_sequence, rounded};
+use sequences::{describe, kept_sequence, parcel, rounded};
 use serde::Serialize;
 use values::{Reply, parsed, plain, put, read_files, sentence, single, triples};
 use wasm_bindgen::prelude::*;
@@ -127,7 +127,7 @@ impl Engine {
         let reply: JsValue = Object::new().into();
         for (name, sequence) in [("source", &self.sequence), ("target", &self.target)] {
             if let Some(sequence) = sequence {
-                put(&reply, name, &describe(sequence, &[], None, &[])?)?;
+                put(&reply, name, &parcel(sequence)?)?;
             }
         }
         Ok(reply)

@@ -22,8 +22,8 @@ struct Opened<'a> {
     warnings: &'a [Warning],
 }
 
-/// The small fields of a sequence that comes back from the page.
-#[derive(Deserialize)]
+/// The small fields of a sequence that comes back from the page, or goes to another worker.
+#[derive(Serialize, Deserialize)]
 struct Kept {
     name: String,
     pose_names: Vec<String>,
@@ -55,22 +55,36 @@ pub fn describe(sequence: &Sequence, clips: &[Clip], clip: Option<usize>, warnin
         clip,
         warnings,
     })?;
+    put_arrays(&reply, sequence)?;
+    put(&reply, "diagnosis", &diagnosis(&Diagnosis::of(sequence, warnings))?)?;
+    Ok(reply)
+}
+
+/// What [`kept_sequence`] makes the same sequence from.
+pub fn parcel(sequence: &Sequence) -> Reply {
+    let pose_names = sequence.poses().iter().map(|pose| pose.name.clone()).collect();
+    let reply = plain(&Kept { name: sequence.name().to_owned(), pose_names })?;
+    put_arrays(&reply, sequence)?;
+    Ok(reply)
+}
+
+/// The big fields of a sequence.
+fn put_arrays(reply: &JsValue, sequence: &Sequence) -> Result<(), JsValue> {
     let times: Vec<f64> = sequence.poses().iter().map(|pose| pose.time).collect();
-    put(&reply, "times", &Float64Array::from(times.as_slice()))?;
-    put(&reply, "faces", &Uint32Array::from(sequence.faces().as_flattened()))?;
-    put(&reply, "reference", &Float32Array::from(coordinates(sequence.reference()).as_slice()))?;
+    put(reply, "times", &Float64Array::from(times.as_slice()))?;
+    put(reply, "faces", &Uint32Array::from(sequence.faces().as_flattened()))?;
+    put(reply, "reference", &Float32Array::from(coordinates(sequence.reference()).as_slice()))?;
     let vertices = sequence.reference().len() as u32;
     let poses = Float32Array::new_with_length(3 * vertices * sequence.poses().len() as u32);
     for (number, pose) in (0u32..).zip(sequence.poses()) {
         let place = 3 * vertices * number;
         poses.subarray(place, place + 3 * vertices).copy_from(&coordinates(&pose.positions));
     }
-    put(&reply, "poses", &poses)?;
-    if let Some(polygons) = sequence.polygons() {
-        put(&reply, "polygons", &Uint32Array::from(polygons))?;
+    put(reply, "poses", &poses)?;
+    match sequence.polygons() {
+        Some(polygons) => put(reply, "polygons", &Uint32Array::from(polygons)),
+        None => Ok(()),
     }
-    put(&reply, "diagnosis", &diagnosis(&Diagnosis::of(sequence, warnings))?)?;
-    Ok(reply)
 }
 
 /// A diagnosis, the faces of its findings as typed arrays.
