@@ -90,9 +90,9 @@ pub fn check<'a>(
     Err(TooLarge { name: step.name(), needed, held, advice: advice(step, of.sizes(), limit) })
 }
 
-/// How many times a step for `of` and all that is `open` fit.
-pub fn side_by_side<'a>(step: Step, of: &Sequence, open: impl IntoIterator<Item = &'a Sequence>, limit: u64) -> usize {
-    let each = open.into_iter().map(held).fold(step.bytes(of.sizes()), u64::saturating_add);
+/// How many times a step for `of`, and that mesh itself, fit.
+pub fn side_by_side(step: Step, of: &Sequence, limit: u64) -> usize {
+    let each = step.bytes(of.sizes()).saturating_add(held(of));
     usize::try_from(limit / each.max(1)).unwrap_or(usize::MAX)
 }
 
@@ -169,7 +169,7 @@ mod tests {
         let still = sequence(0);
         let each = Step::Weights(2).bytes(still.sizes()) + held(&still);
         for (limit, count) in [(0, 0), (each - 1, 0), (each, 1), (5 * each + 1, 5)] {
-            assert_eq!(side_by_side(Step::Weights(2), &still, [&still], limit), count);
+            assert_eq!(side_by_side(Step::Weights(2), &still, limit), count);
         }
     }
 

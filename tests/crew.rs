@@ -9,6 +9,10 @@ use sinew::zoo::{self, Recipe};
 use std::cell::Cell;
 use std::collections::BTreeMap;
 use std::sync::{Condvar, Mutex};
+use std::time::Duration;
+
+/// Members that take longer than this for an item are broken.
+const PATIENCE: Duration = Duration::from_secs(60);
 
 /// The bytes of a result, and whether it is enough.
 type HandedIn = (Vec<u8>, bool);
@@ -50,7 +54,9 @@ impl Crew for Member<'_> {
         let mut handed_in = self.table.handed_in.lock().expect("a lock");
         while results.len() < count {
             let Some((bytes, last)) = handed_in.get(&(meeting, results.len())) else {
-                handed_in = self.table.changed.wait(handed_in).expect("a lock");
+                let (next, late) = self.table.changed.wait_timeout(handed_in, PATIENCE).expect("a lock");
+                assert!(!late.timed_out(), "a member does not hand in what it should");
+                handed_in = next;
                 continue;
             };
             results.push(postcard::from_bytes(bytes).expect("a result"));

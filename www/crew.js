@@ -4,7 +4,7 @@
  * src/crew.rs for what the engine asks of a crew.
  *
  * The leader is the engine's own worker. It starts helpers (helper.js) when an operation begins and ends them with it. It
- * never needs them: items of helpers that are not there yet, late or broken are done by the leader.
+ * does not depend on them: items of helpers that are not there yet, late or broken are done by the leader.
  */
 
 /** The most workers in a crew. */
@@ -14,6 +14,9 @@ const MOST = 8;
 const PATIENCE = 2;
 const LEAST_PATIENCE = 20;
 
+/** Helpers are waited for at most so many milliseconds before the work begins. */
+const GATHERING = 150;
+
 /**
  * How many workers are worth it on this machine, if there is enough to do: one for two of its threads. Two threads of one
  * core get little more done than one, and what is not divided every member does.
@@ -21,11 +24,21 @@ const LEAST_PATIENCE = 20;
 export const most = () => Math.min(Math.max(navigator.hardwareConcurrency >> 1, 1), MOST);
 
 /** Nobody else. */
-export const ALONE = { size: 1 };
+const ALONE = { size: 1, helped: 0, gather: () => {}, end: () => {} };
 
-export class Leader {
+/** A crew of so many members for a task, or nobody else where helpers cannot be started. */
+export function crewOf(size, task) {
+  if (size <= 1) return ALONE;
+  try {
+    return new Leader(task(), size);
+  } catch {
+    return ALONE;
+  }
+}
+
+class Leader {
   /**
-   * @param {object} task what a helper is to do: `{module, kept, operation, payload}`
+   * @param {{module: WebAssembly.Module, kept: object, operation: string, payload: object}} task what a helper is to do
    * @param {number} size members, this one included
    */
   constructor(task, size) {
@@ -35,7 +48,19 @@ export class Leader {
     this.meeting = -1;
     /** What helpers handed in for meetings to come. */
     this.early = [];
-    this.helpers = Array.from({ length: size - 1 }, (_, i) => this.#start(i + 1, task));
+    this.helpers = [];
+    try {
+      for (let rank = 1; rank < size; rank++) this.#start(rank, task);
+    } catch (error) {
+      this.end();
+      throw error;
+    }
+  }
+
+  /** Waits for the helpers to run: a browser starts them only while their leader rests. */
+  async gather() {
+    const begun = performance.now();
+    while (this.helpers.some((helper) => helper.meeting === undefined) && performance.now() - begun < GATHERING) await this.#rest();
   }
 
   /** Ends the helpers. */
@@ -43,9 +68,12 @@ export class Leader {
     for (const helper of this.helpers) helper.worker.terminate();
   }
 
+  // What the engine calls, here and in Member: src/web/worker/crew.rs.
+
   meet(count) {
     this.meeting++;
     this.found = [];
+    this.asked = count;
     this.count = count;
     this.longest = 0;
     const early = this.early;
@@ -68,10 +96,7 @@ export class Leader {
         return item;
       }
       const since = performance.now();
-      await new Promise((resolve) => {
-        this.woken = resolve;
-        setTimeout(resolve, LEAST_PATIENCE);
-      });
+      await this.#rest();
       waited += performance.now() - since;
     }
   }
@@ -87,27 +112,45 @@ export class Leader {
 
   #start(rank, task) {
     const worker = new Worker(new URL('helper.js', import.meta.url), { type: 'module' });
-    const helper = { rank, worker, meeting: -1 };
+    const helper = { worker, meeting: undefined };
+    this.helpers.push(helper);
     worker.addEventListener('message', ({ data }) => this.#hear({ helper, ...data }));
     worker.addEventListener('error', (event) => {
-      // The leader does without.
       event.preventDefault();
-      helper.meeting = -Infinity;
+      this.#lose(helper);
     });
     worker.postMessage({ ...task, rank, size: this.size });
-    return helper;
   }
 
-  /** A helper has come to a meeting, or hands in a result. */
-  #hear({ helper, meeting, item, result, enough }) {
-    helper.meeting = Math.max(helper.meeting, meeting);
-    if (item === undefined || meeting < this.meeting) return;
-    if (meeting > this.meeting) this.early.push({ helper, meeting, item, result, enough });
-    else if (!this.found[item] && item < this.count) {
-      this.helped++;
-      this.#take(item, result, enough);
-      this.woken?.();
+  /** Waits for news, not for long. */
+  #rest() {
+    return new Promise((resolve) => {
+      this.woken = resolve;
+      setTimeout(resolve, LEAST_PATIENCE);
+    });
+  }
+
+  /** Does without a helper. */
+  #lose(helper) {
+    helper.worker.terminate();
+    helper.meeting = -Infinity;
+  }
+
+  /** A helper runs (its meeting is -1), has come to a meeting of `asked` items, or hands in the result of one. */
+  #hear(message) {
+    const { helper, meeting, asked, item, result, enough } = message;
+    if (helper.meeting === -Infinity) return;
+    helper.meeting = Math.max(helper.meeting ?? -1, meeting);
+    if (meeting > this.meeting) this.early.push(message);
+    else if (meeting === this.meeting && meeting >= 0) {
+      // One who has come to something else is on another way.
+      if (asked !== this.asked) this.#lose(helper);
+      else if (item < this.count && !this.found[item]) {
+        this.helped++;
+        this.#take(item, result, enough);
+      }
     }
+    this.woken?.();
   }
 
   #take(item, result, enough) {
@@ -127,14 +170,14 @@ export class Leader {
   }
 
   /**
-   * The item that is best done next, and whether to do it at once: one's own and those of helpers that are not here are; of
-   * the others the last one, if its owner will not come to it soon.
+   * The item that is best done next, and whether to do it at once: one's own, and those of helpers that are neither here nor
+   * on the way from the last meeting, are; of the others the last one, if its owner will not come to it soon.
    */
   #choose() {
     const owner = (item) => item % this.size;
-    const here = (item) => owner(item) > 0 && this.helpers[owner(item) - 1].meeting >= this.meeting;
+    const near = (item) => owner(item) > 0 && this.helpers[owner(item) - 1].meeting >= this.meeting - 1;
     const missing = this.#missing();
-    const free = missing.find((item) => owner(item) === 0) ?? missing.find((item) => !here(item));
+    const free = missing.find((item) => !near(item));
     if (free !== undefined) return { item: free, sure: true };
     const last = missing[missing.length - 1];
     return { item: last, sure: missing.some((item) => item < last && owner(item) === owner(last)) };
@@ -159,9 +202,10 @@ export class Member {
   meet(count) {
     this.news.delete(this.meeting);
     this.meeting++;
+    this.asked = count;
     this.count = count;
     this.item = this.rank;
-    self.postMessage({ meeting: this.meeting });
+    self.postMessage({ meeting: this.meeting, asked: count });
   }
 
   async next() {
@@ -177,7 +221,7 @@ export class Member {
 
   put(item, result, enough) {
     if (enough) this.count = item;
-    self.postMessage({ meeting: this.meeting, item, result, enough }, [result.buffer]);
+    self.postMessage({ meeting: this.meeting, asked: this.asked, item, result, enough }, [result.buffer]);
   }
 
   results() {

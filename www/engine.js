@@ -92,6 +92,10 @@ export class Engine {
   }
 
   #hear({ id, progress, result, helped, error, crash, memory }) {
+    if (crash !== undefined) {
+      this.#broken(crash, memory);
+      return;
+    }
     const call = this.pending.get(id);
     if (!call) return;
     if (progress) {
@@ -99,10 +103,7 @@ export class Engine {
       return;
     }
     this.pending.delete(id);
-    if (crash !== undefined) {
-      this.pending.set(id, call);
-      this.#broken(crash, memory);
-    } else if (error !== undefined) call.reject(new Error(error));
+    if (error !== undefined) call.reject(new Error(error));
     else {
       this.helped = helped;
       call.resolve(result);

@@ -6,14 +6,16 @@ import { shared } from './shared.js';
 let member;
 self.addEventListener('message', ({ data }) => {
   if (member) member.hear(data);
-  else help(data);
+  // What is wrong here is wrong for the leader, too, who says so.
+  else help(data).catch(() => {});
 });
+self.postMessage({ meeting: -1 });
 
 async function help({ module, kept, operation, payload, rank, size }) {
   member = new Member(rank, size);
   await init({ module_or_path: module });
   const engine = new Engine();
-  if (kept.source) engine.restore(kept.source);
-  if (kept.target) engine.restore_target(kept.target);
+  if (shared[operation].target) engine.restore_target(kept);
+  else engine.restore(kept);
   await shared[operation].run(engine, payload, () => {}, member);
 }

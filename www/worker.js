@@ -3,7 +3,7 @@
  * one at a time and in order. See engine.js for the messages.
  */
 import init, { Engine } from '../pkg/worker.js';
-import { ALONE, Leader, most } from './crew.js';
+import { crewOf, most } from './crew.js';
 import { shared } from './shared.js';
 
 /** Progress is told at most this often, in milliseconds. */
@@ -52,11 +52,11 @@ let helped = 0;
 
 /** Runs an operation with as many helpers as it is worth; `crew` in the payload is the most members there may be. */
 async function together(operation, payload, progress) {
-  const { members, run } = shared[operation];
+  const { target, members, run } = shared[operation];
   const size = members(engine, payload, payload.crew ?? most());
-  if (size === 1) return run(engine, payload, progress, ALONE);
-  const crew = new Leader({ module: code, kept: engine.kept(), operation, payload }, size);
+  const crew = crewOf(size, () => ({ module: code, kept: engine.kept(target), operation, payload }));
   try {
+    await crew.gather();
     return await run(engine, payload, progress, crew);
   } finally {
     helped += crew.helped;

@@ -24,7 +24,7 @@ use serde::{Deserialize, Serialize};
 /// How many candidates pass the first and the second sieve when a point is added.
 const ADDING: [usize; 2] = [20, 3];
 
-/// The same when one is replaced.
+/// How many pass the first when one is replaced; the second, one.
 const REPLACING: usize = 12;
 
 /// The same when one is moved to a vertex at most so many edges away.

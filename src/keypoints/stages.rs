@@ -176,23 +176,18 @@ async fn in_turn<'a>(
     watch: &mut Watch<'_>,
 ) -> Result<(), KeyPointError> {
     let count = search.set.members.len();
-    let (mut done, mut idle, mut place) = (from, 0, 0);
-    for _ in 0..ROUNDS * count {
-        if idle >= count {
-            break;
-        }
+    let (mut done, mut place, mut left) = (from, 0, ROUNDS * count);
+    while left > 0 {
         watch.tell(done)?;
-        let found = crew.until(count - idle, &|i| attempt(search, (place + i) % count), &Option::is_some).await;
+        let found = crew.until(count.min(left), &|i| attempt(search, (place + i) % count), &Option::is_some).await;
         done += (to - done) * (0.02 * found.len() as f64).min(1.0);
         place = (place + found.len()) % count;
-        idle += found.len();
-        if let Some(better) = found.into_iter().next_back().flatten() {
-            let last = (place + count - 1) % count;
-            let old = search.set.members[last];
-            search.accept_instead(last, better);
-            trail.add(coarse, old, search.set.members[last], search.set.error);
-            idle = 0;
-        }
+        left -= found.len();
+        let Some(better) = found.into_iter().next_back().flatten() else { break };
+        let last = (place + count - 1) % count;
+        let old = search.set.members[last];
+        search.accept_instead(last, better);
+        trail.add(coarse, old, search.set.members[last], search.set.error);
     }
     Ok(())
 }

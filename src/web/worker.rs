@@ -121,16 +121,9 @@ impl Engine {
         Ok(())
     }
 
-    /// What another engine must know to do the same: `{source, target}`, for [`Engine::restore`] and
-    /// [`Engine::restore_target`], each undefined if there is none.
-    pub fn kept(&self) -> Reply {
-        let reply: JsValue = Object::new().into();
-        for (name, sequence) in [("source", &self.sequence), ("target", &self.target)] {
-            if let Some(sequence) = sequence {
-                put(&reply, name, &parcel(sequence)?)?;
-            }
-        }
-        Ok(reply)
+    /// The source, or the target, as another engine takes it ([`Engine::restore`], [`Engine::restore_target`]).
+    pub fn kept(&self, target: bool) -> Reply {
+        parcel(if target { self.open_target()? } else { self.open_sequence()? })
     }
 
     /// Segments what is open, with [`Parameters`] in their serde form; `progress` is called with the stage and the

@@ -85,7 +85,7 @@ pub struct Column {
     pub energy: f64,
     /// See [`super::Weights::kkt_residual`].
     pub residual: f64,
-    /// The last factor, unless it is too large to keep or to send, or nothing is likely to be updated.
+    /// The last factor, unless it is too large to keep or nothing is likely to be updated; it is not sent.
     #[serde(skip)]
     pub factor: Option<Principal>,
 }

@@ -60,6 +60,9 @@ impl Crew for Workers {
 /// Fewer weights than this are there before another worker is.
 const WORTH_SHARING: usize = 40_000;
 
+/// Bytes that all members may take together, where there are more than one.
+const LIMIT: u64 = 1 << 30;
+
 /// Meshes of fewer vertices are searched before another worker is there.
 const WORTH_SEARCHING: usize = 300;
 
@@ -68,19 +71,20 @@ impl Engine {
     /// How many workers, this one included and `most` at most, are worth a search for so many key points.
     pub fn members_for_search(&self, points: usize, most: usize) -> usize {
         let worth = |sequence: &&Sequence| sequence.sizes().vertices >= WORTH_SEARCHING;
-        self.sequence.as_ref().filter(worth).map_or(1, |of| self.members(Step::KeyPoints(points), of, most))
+        self.sequence.as_ref().filter(worth).map_or(1, |of| members(Step::KeyPoints(points), of, most))
     }
 
-    /// The same for the weights of so many handles of the source, or of the target.
+    /// The same for the weights of so many handles of the target, or for those of the source and the fits to its poses.
     pub fn members_for_weights(&self, handles: usize, target: bool, most: usize) -> usize {
-        let sequence = if target { &self.target } else { &self.sequence };
+        let (sequence, step) =
+            if target { (&self.target, Step::Weights(handles)) } else { (&self.sequence, Step::KeyPoints(handles)) };
         let worth = |sequence: &&Sequence| sequence.sizes().vertices.saturating_mul(handles) >= WORTH_SHARING;
         let most = most.min(handles);
-        sequence.as_ref().filter(worth).map_or(1, |of| self.members(Step::Weights(handles), of, most))
+        sequence.as_ref().filter(worth).map_or(1, |of| members(step, of, most))
     }
+}
 
-    /// All together may take the memory that one may.
-    fn members(&self, step: Step, of: &Sequence, most: usize) -> usize {
-        memory::side_by_side(step, of, self.sequence.iter().chain(&self.target), memory::LIMIT).clamp(1, most.max(1))
-    }
+/// As many as there is memory for, one at least and `most` at most.
+fn members(step: Step, of: &Sequence, most: usize) -> usize {
+    memory::side_by_side(step, of, LIMIT).clamp(1, most.max(1))
 }
