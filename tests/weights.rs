@@ -65,6 +65,14 @@ fn a_horse_has_optimal_weights_that_follow_a_moved_handle() {
 }
 
 #[test]
+fn a_fine_mesh_has_optimal_weights() {
+    let horse = horse(110_000);
+    let n = horse.reference().len() as u32;
+    assert!(n > 50_000);
+    assert_optimal(&solve(horse.faces(), horse.reference(), &[0, n / 3, 2 * n / 3, n - 1]));
+}
+
+#[test]
 fn weights_do_not_depend_on_the_unit_of_length() {
     let (faces, positions) = grid(15);
     let handles = [0, 14, 112, 210];

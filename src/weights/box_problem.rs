@@ -29,11 +29,6 @@ const FORCE: f64 = 9e-7;
 const SMALL: usize = 300;
 const FORCE_IF_SMALL: f64 = 1e-11;
 
-/// The same on meshes of more than so many vertices, where the last digits would take minutes: energies are then within
-/// about 0.1 % of the least (measured on horses of 34,000 vertices), and the residual says so.
-const LARGE: usize = 50_000;
-const FORCE_IF_LARGE: f64 = 1e-2;
-
 /// The same where a first guess is all that is wanted.
 const FORCE_OF_ESTIMATE: f64 = 1e-3;
 
@@ -140,11 +135,7 @@ impl<'a> Problem<'a> {
             largest: 0.0,
             marks: vec![false; n],
             ties: vec![0; n],
-            no_force: match members.len() {
-                n if n <= SMALL => FORCE_IF_SMALL,
-                n if n <= LARGE => FORCE,
-                _ => FORCE_IF_LARGE,
-            },
+            no_force: if members.len() <= SMALL { FORCE_IF_SMALL } else { FORCE },
         }
     }
 
