@@ -18,10 +18,14 @@ const LEAST_PATIENCE = 20;
 const GATHERING = 150;
 
 /**
- * How many workers are worth it on this machine, if there is enough to do: one for two of its threads. Two threads of one
- * core get little more done than one, and what is not divided every member does.
+ * How many workers are worth it on this machine, if there is enough to do: one for two of its threads, for two threads of
+ * one core get little more done than one, and what is not divided every member does. Two threads may be two cores.
  */
-export const most = () => Math.min(Math.max(navigator.hardwareConcurrency >> 1, 1), MOST);
+export function most() {
+  // A browser may keep it to itself.
+  const threads = navigator.hardwareConcurrency || 1;
+  return Math.min(Math.max(threads >> 1, 2), threads, MOST);
+}
 
 /** Nobody else. */
 const ALONE = { size: 1, helped: 0, gather: () => {}, end: () => {} };
