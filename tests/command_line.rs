@@ -275,3 +275,26 @@ fn transfer_by_faces_reads_lines_and_compares_methods() {
     assert_eq!(output.status.code(), Some(2));
     assert!(String::from_utf8_lossy(&output.stderr).contains("its first line says 9"));
 }
+
+#[test]
+fn what_a_command_reports_the_next_one_reads() {
+    let folder = folder("chain");
+    let run = |line: &str| {
+        let output = sinew(&folder, &line.split(' ').collect::<Vec<_>>());
+        assert!(output.status.success(), "{line}: {}", String::from_utf8_lossy(&output.stderr));
+    };
+    run("zoo horse --faces 1000 --poses 3 --out horse.glb");
+    run("zoo camel --faces 1000 --poses 1 --out camel.glb");
+    run("keypoints horse.glb --points 6 --report points.json");
+    run("weights horse.glb --handles points.json --report weights.json");
+    run("propose horse.glb --target camel.glb --points points.json --report proposals.json");
+    run("transfer horse.glb --target camel.glb --pairs proposals.json --out walking.glb");
+    let read = |name: &str| json(&std::fs::read(folder.join(name)).unwrap());
+    assert_eq!(read("weights.json")["handles"], read("points.json")["key_points"]);
+    assert_eq!(read("proposals.json")["pairs"].as_array().map(Vec::len), Some(6));
+    let walking = json(&sinew(&folder, &["inspect", "walking.glb", "--json"]).stdout);
+    assert!(walking["poses"].as_u64() >= Some(3), "{walking}");
+    let output = sinew(&folder, &["transfer", "horse.glb", "--target", "camel.glb", "--pairs", "points.json"]);
+    assert_eq!(output.status.code(), Some(2));
+    assert!(String::from_utf8_lossy(&output.stderr).contains("points.json is no report with pairs"));
+}

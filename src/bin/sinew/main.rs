@@ -3,6 +3,7 @@
 mod input;
 mod inspect;
 mod keypoints;
+mod lists;
 mod output;
 mod picture;
 mod propose;

@@ -2,9 +2,9 @@
 
 use crate::Refusal;
 use crate::input::{Input, print_warnings};
+use crate::lists;
 use crate::output::{self, say};
 use clap::Args;
-use serde::Deserialize;
 use serde_json::json;
 use sinew::clock;
 use sinew::import::{File, Options, open_in_order};
@@ -20,29 +20,15 @@ pub struct Propose {
     /// The mesh on which the points are to be found
     #[arg(long, value_name = "MESH")]
     target: PathBuf,
-    /// JSON with the source's vertex numbers: a list, or an object with `key_points` (a report of key points)
-    #[arg(long, value_name = "FILE.json")]
+    /// Vertex numbers of the source, separated by white space or as a JSON list, or a report of key points
+    #[arg(long, value_name = "FILE")]
     points: PathBuf,
-    /// JSON with the pairs that are known: [{"source": VERTEX, "target": VERTEX}, …]
-    #[arg(long, value_name = "FILE.json")]
+    /// The pairs that are known: [{"source": 12, "target": 34}, …], or lines of two numbers (.cons)
+    #[arg(long, value_name = "FILE")]
     pairs: Option<PathBuf>,
     /// Write the proposals as JSON
     #[arg(long, value_name = "FILE.json")]
     report: Option<PathBuf>,
-}
-
-/// The two forms of a file of points.
-#[derive(Deserialize)]
-#[serde(untagged)]
-enum Points {
-    Plain(Vec<u32>),
-    Report { key_points: Vec<u32> },
-}
-
-#[derive(Deserialize)]
-struct Pair {
-    source: u32,
-    target: u32,
 }
 
 impl Propose {
@@ -51,10 +37,8 @@ impl Propose {
         let source = self.input.open()?;
         let name = self.target.display().to_string();
         let target = open_in_order(&[File { name, bytes: read(&self.target)? }], &Options::default())?;
-        let points = match parse(&self.points)? {
-            Points::Plain(points) | Points::Report { key_points: points } => points,
-        };
-        let pairs: Vec<Pair> = self.pairs.as_deref().map(parse).transpose()?.unwrap_or_default();
+        let points = lists::vertices(&self.points)?;
+        let pairs = self.pairs.as_deref().map(lists::pairs).transpose()?.unwrap_or_default();
         let known: Vec<Option<u32>> =
             points.iter().map(|&p| pairs.iter().find(|pair| pair.source == p).map(|pair| pair.target)).collect();
         let (from, to) = (&source.sequence, &target.sequence);
@@ -90,9 +74,4 @@ impl Propose {
 
 fn read(path: &Path) -> Result<Vec<u8>, Refusal> {
     std::fs::read(path).map_err(|error| Refusal(format!("{} cannot be read: {error}", path.display())))
-}
-
-fn parse<T: serde::de::DeserializeOwned>(path: &Path) -> Result<T, Refusal> {
-    serde_json::from_slice(&read(path)?)
-        .map_err(|error| Refusal(format!("{} is not what was expected: {error}", path.display())))
 }

@@ -2,14 +2,13 @@
 
 mod compare;
 mod faces;
-mod pairs;
 
 use crate::Refusal;
 use crate::input::{Input, print_warnings};
+use crate::lists;
 use crate::output::{self, counted, say};
 use clap::{Args, ValueEnum};
 use glam::DVec3;
-use pairs::pairs;
 use serde_json::{Map, Value, json};
 use sinew::clock;
 use sinew::export::skin::{Influences, Skin, SkinPose, light};
@@ -32,7 +31,7 @@ pub struct Transfer {
     /// The mesh that is to move: its reference pose
     #[arg(long, value_name = "MESH")]
     target: PathBuf,
-    /// Corresponding vertices: [{"source": 12, "target": 34}, …], or lines of two numbers (.cons)
+    /// Corresponding vertices: [{"source": 12, "target": 34}, …], lines of two numbers (.cons), or a report of proposals
     #[arg(long, value_name = "FILE")]
     pairs: PathBuf,
     /// The family of methods
@@ -94,7 +93,7 @@ impl Transfer {
         let start = clock::seconds();
         let source = self.input.open()?;
         let target = mesh(std::slice::from_ref(&self.target))?;
-        let pairs = pairs(&self.pairs)?;
+        let pairs = lists::pairs(&self.pairs)?;
         let reading = clock::seconds() - start;
         if let Some(path) = &self.compare {
             return self.run_comparison(path, &source, &target, &pairs);

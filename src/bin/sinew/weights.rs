@@ -2,6 +2,7 @@
 
 use crate::Refusal;
 use crate::input::{Input, print_warnings};
+use crate::lists;
 use crate::output::{self, counted, say};
 use clap::Args;
 use serde_json::json;
@@ -14,7 +15,7 @@ use std::path::PathBuf;
 pub struct WeightsCommand {
     #[command(flatten)]
     input: Input,
-    /// Vertex numbers from 0, separated by white space or as a JSON list
+    /// Vertex numbers from 0, separated by white space or as a JSON list, or a report of key points
     #[arg(long, value_name = "FILE")]
     handles: PathBuf,
     /// Partition of unity as a constraint (slow)
@@ -33,7 +34,7 @@ impl WeightsCommand {
     pub fn run(&self) -> Result<(), Refusal> {
         let imported = self.input.open()?;
         let sequence = &imported.sequence;
-        let handles = self.handles()?;
+        let handles = lists::vertices(&self.handles)?;
         let parameters = Parameters { joint: self.joint };
         let poses: Vec<_> = sequence.poses().iter().map(|pose| pose.positions.as_slice()).collect();
         let start = clock::seconds();
@@ -71,17 +72,6 @@ impl WeightsCommand {
         print_warnings(&imported.warnings);
         print_warnings(&weights.warnings);
         Ok(())
-    }
-
-    fn handles(&self) -> Result<Vec<u32>, Refusal> {
-        let name = self.handles.display();
-        let text = std::fs::read_to_string(&self.handles)
-            .map_err(|error| Refusal(format!("{name} cannot be read: {error}")))?;
-        let number = |word: &str| {
-            word.parse::<u32>().map_err(|_| Refusal(format!("{name}: “{word}” is not a vertex number (0, 1, 2, …)")))
-        };
-        let separator = |c: char| c.is_whitespace() || matches!(c, ',' | '[' | ']');
-        text.split(separator).filter(|word| !word.is_empty()).map(number).collect()
     }
 }
 
