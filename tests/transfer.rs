@@ -4,11 +4,14 @@
 #[path = "common/npz.rs"]
 mod npz;
 
-use glam::{DMat3, DVec3};
+use glam::{DAffine3, DMat3, DVec3};
+use sinew::linalg::polar::frobenius;
 use sinew::linalg::rigid_fit::Moments;
 use sinew::mesh::ball::unit_ball;
 use sinew::observer::Silent;
 use sinew::sequence::{Pose, Sequence};
+use sinew::transfer::rig::Rig;
+use sinew::transfer::surface::Surface;
 use sinew::transfer::{Method, Pair, Parameters, Prepared, Transfer, TransferError, transfer};
 use sinew::zoo::{self, Creature, Recipe};
 use std::collections::BTreeMap;
@@ -218,6 +221,25 @@ fn another_pose_follows_without_a_new_start() {
         assert!(apart(&next, &poses[7]) < 3.0 * apart(&poses[7], &poses[6]), "{method:?}");
         assert_eq!(prepared.maps(&rest[0].positions[1..]), None);
         assert_eq!(prepared.maps(&vec![DVec3::NAN; horse.sequence.reference().len()]), None);
+    }
+}
+
+/// A bone of one vertex, or of vertices on a line, does not say how it turns; rounding must not say it instead.
+#[test]
+fn bones_of_few_vertices_do_not_spin() {
+    for (name, faces) in [("dog", 600), ("person", 900), ("octopus", 900)] {
+        let source = creature(name, faces).sequence;
+        let mut poses = source.poses().to_vec();
+        let nearly =
+            |(i, p): (usize, &DVec3)| *p + 1e-7 * source.diagonal() * DVec3::splat(((i * 7919) % 13) as f64 - 6.0);
+        poses.push(Pose { positions: poses[0].positions.iter().enumerate().map(nearly).collect(), ..poses[0].clone() });
+        let surface = Surface::new(&source);
+        let places: Vec<Vec<DVec3>> = poses.iter().map(|pose| surface.unit(&pose.positions)).collect();
+        let rig = Rig::new(&surface, &places, 64);
+        let apart = |(a, b): (&DAffine3, &DAffine3)| frobenius(a.matrix3 - b.matrix3);
+        let most = rig.maps[0].iter().zip(&rig.maps[poses.len() - 1]).map(apart).fold(0.0, f64::max);
+        println!("{name}: {} bones, {most:.1e} apart", rig.bones);
+        assert!(most < 0.05, "{name}: {most}");
     }
 }
 

@@ -93,12 +93,23 @@ impl Moments {
         (squares - 2.0 * largest_root(h, 0.5 * squares)).max(0.0)
     }
 
+    /// Σ w q′ p′ᵀ about the two centroids: what the best rotation is read from.
+    pub fn covariance(&self) -> DMat3 {
+        self.centred().0
+    }
+
     /// The best rigid motion; the identity for no points.
     pub fn motion(&self) -> RigidMotion {
+        self.motion_with(DMat3::ZERO)
+    }
+
+    /// The same with `more` covariance for the rotation, of points elsewhere: a few points, or points on a line, do not
+    /// tell how they turn.
+    pub fn motion_with(&self, more: DMat3) -> RigidMotion {
         if self.weight <= 0.0 {
             return RigidMotion { rotation: DMat3::IDENTITY, translation: DVec3::ZERO };
         }
-        let rotation = best_rotation(self.centred().0);
+        let rotation = best_rotation(self.covariance() + more);
         RigidMotion { rotation, translation: (self.q - rotation * self.p) / self.weight }
     }
 }

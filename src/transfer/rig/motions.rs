@@ -1,15 +1,21 @@
 //! The motions of given bones in a pose: rotations bone by bone, then all translations together.
 
 use super::weights::Row;
+use crate::linalg::polar::frobenius;
 use crate::linalg::rigid_fit::Moments;
 use crate::transfer::surface::Surface;
-use glam::{DAffine3, DVec3};
+use glam::{DAffine3, DMat3, DVec3};
 use nalgebra::{Cholesky, DMatrix, Dyn};
 
 /// The rotation of a bone is that of the vertices which follow little else: shares count to this power.
 const OWN: i32 = 4;
 /// How much translations are held to those of the bones on their own.
 const HOLD: f64 = 1e-3;
+/// How much the rotation of a bone is drawn to those of the bones it blends with: only where few vertices, or vertices on a
+/// line, leave it open is that felt.
+const COMPANY: f64 = 1e-3;
+/// Vertices that lie no farther apart than the root of this, in radii, are as good as one.
+const POINT: f64 = 1e-6;
 
 /// What the fit of a pose needs of the weights.
 #[derive(Clone, Debug, Default)]
@@ -17,6 +23,8 @@ pub struct Motions {
     rows: Vec<Row>,
     bones: usize,
     hold: Vec<f64>,
+    /// For each bone those that it blends with, and how much, in shares that sum to 1.
+    company: Vec<Vec<(usize, f64)>>,
     system: Option<Cholesky<f64, Dyn>>,
 }
 
@@ -31,8 +39,9 @@ impl Motions {
                 row.iter().for_each(|&(j, b)| system[(i as usize, j as usize)] += m * a * b);
             }
         }
+        let company = (0..bones).map(|i| company(&system, i)).collect();
         (0..bones).for_each(|i| system[(i, i)] += hold[i]);
-        Self { rows: rows.to_vec(), bones, hold, system: system.cholesky() }
+        Self { rows: rows.to_vec(), bones, hold, company, system: system.cholesky() }
     }
 
     /// The motion of each bone that carries the surface best to #N other positions.
@@ -44,15 +53,23 @@ impl Motions {
                 moments[bone as usize].add(weight, surface.positions[v], pose[v]);
             }
         }
-        let mut maps: Vec<DAffine3> = moments
-            .iter()
-            .map(|m| {
-                let motion = m.motion();
-                DAffine3::from_mat3_translation(motion.rotation, motion.translation)
-            })
-            .collect();
+        let covariances: Vec<DMat3> = moments.iter().map(Moments::covariance).collect();
+        let map = |(m, bone): (&Moments, usize)| {
+            let motion = m.motion_with(self.drawn(&covariances, bone, POINT * m.weight));
+            DAffine3::from_mat3_translation(motion.rotation, motion.translation)
+        };
+        let mut maps: Vec<DAffine3> = moments.iter().zip(0..).map(map).collect();
         self.translations(surface, pose, &mut maps);
         maps
+    }
+
+    /// What the bones that a bone blends with add to its covariance: theirs, at the scale of its own, which is `least` at
+    /// least.
+    fn drawn(&self, covariances: &[DMat3], bone: usize, least: f64) -> DMat3 {
+        let own = frobenius(covariances[bone]).max(least);
+        let others = self.company[bone].iter().map(|&(other, share)| (covariances[other], share));
+        let scaled = others.filter(|(c, _)| frobenius(*c) > 0.0).map(|(c, share)| c * (share * own / frobenius(c)));
+        COMPANY * scaled.sum::<DMat3>()
     }
 
     /// Given the rotations, the translations that carry the blended surface best.
@@ -77,4 +94,11 @@ impl Motions {
             }
         }
     }
+}
+
+/// The bones that share vertices with a bone, and how much, in shares that sum to 1.
+fn company(blends: &DMatrix<f64>, bone: usize) -> Vec<(usize, f64)> {
+    let others = || (0..blends.nrows()).filter(|&other| other != bone && blends[(bone, other)] > 0.0);
+    let all: f64 = others().map(|other| blends[(bone, other)]).sum();
+    others().map(|other| (other, blends[(bone, other)] / all)).collect()
 }
