@@ -13,6 +13,9 @@ pub fn from_zero(times: impl Iterator<Item = f64> + Clone) -> Vec<f32> {
     if rise { times } else { (0..times.len()).map(|i| i as f32 * STEP).collect() }
 }
 
+/// A last pose that is no farther from the first than this, in shares of the longest step, is the first again.
+const AGAIN: f64 = 0.1;
+
 /// Whether the step from the last of the poses to the first is one like the others (and not none), so that the
 /// motion is a loop. `step(a, b)` is how far apart poses `a` and `b` are.
 pub fn closes(poses: usize, step: impl Fn(usize, usize) -> f64) -> bool {
@@ -21,7 +24,7 @@ pub fn closes(poses: usize, step: impl Fn(usize, usize) -> f64) -> bool {
     }
     let longest = (1..poses).map(|pose| step(pose - 1, pose)).fold(0.0, f64::max);
     let back = step(poses - 1, 0);
-    back > 1e-6 * longest && back <= 1.5 * longest
+    back > AGAIN * longest && back <= 1.5 * longest
 }
 
 /// How far apart two poses are: the sum over their points.
@@ -33,5 +36,19 @@ pub fn step(a: &[DVec3], b: &[DVec3]) -> f64 {
 pub fn close(times: &mut Vec<f32>) {
     if let [first, .., last] = times[..] {
         times.push(last + (last - first) / (times.len() - 1) as f32);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_loop_is_closed_once() {
+        let around = |i: usize, of: usize| (i as f64 / of as f64 * std::f64::consts::TAU).sin_cos();
+        let apart = |(a, b): (f64, f64), (c, d): (f64, f64)| (a - c).hypot(b - d);
+        assert!(closes(8, |a, b| apart(around(a, 8), around(b, 8))), "once around, the first not shown again");
+        assert!(!closes(9, |a, b| apart(around(a, 8), around(b, 8)) + 1e-3), "nearly the first again");
+        assert!(!closes(8, |a, b| a.abs_diff(b) as f64), "there, not back");
     }
 }
