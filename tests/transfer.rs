@@ -224,6 +224,24 @@ fn another_pose_follows_without_a_new_start() {
     }
 }
 
+#[test]
+fn which_way_faces_are_wound_does_not_matter() {
+    let (horse, camel) = (creature("horse", 2000), creature("camel", 2000));
+    let pairs = pairs(&horse, &camel, 14);
+    let inside_out = |sequence: &Sequence| {
+        let faces = sequence.faces().iter().map(|&[a, b, c]| [a, c, b]).collect();
+        Sequence::new(sequence.name(), faces, sequence.reference().to_vec(), sequence.poses().to_vec()).expect("a mesh")
+    };
+    let (source, target) = (&horse.sequence, still(&camel.sequence));
+    let expected = by_default(source, &target, &pairs).poses(target.reference());
+    for (source, target) in [(inside_out(source), target.clone()), (source.clone(), inside_out(&target))] {
+        let found = by_default(&source, &target, &pairs).poses(target.reference());
+        let far =
+            expected.iter().flatten().zip(found.iter().flatten()).map(|(a, b)| a.distance(*b)).fold(0.0, f64::max);
+        assert!(far < 1e-3 * target.diagonal(), "{far}");
+    }
+}
+
 /// A bone of one vertex, or of vertices on a line, does not say how it turns; rounding must not say it instead.
 #[test]
 fn bones_of_few_vertices_do_not_spin() {

@@ -2,6 +2,7 @@
 
 use super::kd_tree::KdTree;
 use crate::mesh::ball::unit_ball;
+use crate::mesh::doctor::outward;
 pub use crate::mesh::face::nearest_in_triangle;
 use crate::mesh::{face, weld};
 use crate::sequence::Sequence;
@@ -19,7 +20,7 @@ pub struct Surface {
     pub vertex: Vec<u32>,
     /// #N positions in the unit ball.
     pub positions: Vec<DVec3>,
-    /// Faces that name three different places.
+    /// Faces that name three different places, turned to look outwards.
     pub faces: Vec<[u32; 3]>,
     /// #N unit normals (zero where there is none).
     pub normals: Vec<DVec3>,
@@ -59,8 +60,7 @@ impl Surface {
         for v in 0..stands.len() {
             place[v] = place[stands[v] as usize];
         }
-        let faces: Vec<[u32; 3]> = sequence
-            .faces()
+        let faces: Vec<[u32; 3]> = outward(sequence.faces(), sequence.reference())
             .iter()
             .map(|face| face.map(|v| place[v as usize]))
             .filter(|&[a, b, c]| a != b && b != c && c != a)

@@ -160,3 +160,18 @@ fn buffers_in_the_document() {
     let (document, _) = triangle().split("data:application/octet-stream;base64,@@@@");
     assert!(open(&[file("made.gltf", document)], &unwelded()).unwrap_err().0.contains("not valid base64"));
 }
+
+#[test]
+fn a_mirrored_node_is_wound_the_other_way_round() {
+    let area = |maker: &Maker| {
+        let sequence = import(maker).sequence;
+        let [a, b, c] = sequence.faces()[0].map(|v| sequence.reference()[v as usize]);
+        (b - a).cross(c - a)
+    };
+    let plain = triangle();
+    let mut mirrored = triangle();
+    mirrored.json["nodes"][0]["scale"] = json!([-1.0, 1.0, 1.0]);
+    let (as_it_is, in_the_mirror) = (area(&plain), area(&mirrored));
+    // The triangle lies in the plane of x and y, and still shows the same side to z.
+    assert!(as_it_is.z * in_the_mirror.z > 0.0, "{as_it_is} {in_the_mirror}");
+}

@@ -36,6 +36,7 @@ mod mirrored;
 mod normals;
 mod orientation;
 mod outliers;
+mod outward;
 mod pieces;
 mod seams;
 mod slivers;
@@ -43,6 +44,8 @@ mod turned;
 mod unused;
 mod winding;
 mod words;
+
+pub use outward::outward;
 
 use crate::sequence::Sequence;
 use crate::warning::Warning;

@@ -213,3 +213,27 @@ fn nothing_is_no_mesh_and_wrong_numbers_are_passed_over() {
     let diagnosis = examined(&[[0, 1, 9], [0, 1, 2]], &[DVec3::ZERO, DVec3::X, DVec3::Y], &[vec![DVec3::ZERO]]);
     assert_eq!(found(&diagnosis, Code::DegenerateFaces), (1, 1));
 }
+
+#[test]
+fn faces_are_turned_outwards() {
+    let horse =
+        crate::zoo::make(&crate::zoo::Recipe { name: "horse".into(), faces: 2000, poses: 1, ..Default::default() });
+    let horse = horse.expect("a horse").sequence;
+    let (faces, positions) = (horse.faces(), horse.reference());
+    assert_eq!(outward(faces, positions), faces);
+    let over = |&[a, b, c]: &[u32; 3]| [a, c, b];
+    let around = |f: [u32; 3]| (0..3).map(|i| [f[i], f[(i + 1) % 3], f[(i + 2) % 3]]).min();
+    let alike = |a: &[[u32; 3]], b: &[[u32; 3]]| a.iter().zip(b).all(|(&a, &b)| around(a) == around(b));
+    // All, some, and all but a hole.
+    let wrong: Vec<[u32; 3]> = faces.iter().map(over).collect();
+    assert!(alike(&outward(&wrong, positions), faces));
+    let some: Vec<[u32; 3]> =
+        faces.iter().enumerate().map(|(f, face)| if f % 5 == 0 { over(face) } else { *face }).collect();
+    assert!(alike(&outward(&some, positions), faces));
+    assert!(alike(&outward(&wrong[3..], positions), &faces[3..]));
+    // What has no inside, or is no face, stays.
+    let open = [[0, 1, 2], [0, 2, 3], [9, 9, 9_999_999]];
+    let square = [DVec3::ZERO, DVec3::X, DVec3::new(1.0, 1.0, 0.5), DVec3::Y];
+    assert_eq!(outward(&open, &square), open);
+    assert!(outward(&[], &[]).is_empty());
+}

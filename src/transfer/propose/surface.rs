@@ -6,6 +6,7 @@
 //! Vision 69(1), 2006, pp. 145–156). That asks nothing of the mesh: seams, holes, edges with many faces, many pieces.
 
 use super::paths::{Graph, Paths};
+use crate::mesh::doctor::outward;
 use crate::mesh::weld::weld;
 use glam::DVec3;
 
@@ -60,7 +61,7 @@ impl Surface {
         let (mut points, sides, diagonal) = normalised(faces, positions)?;
         points.iter_mut().filter(|p| !p.is_finite()).for_each(|p| *p = DVec3::ZERO);
         let stands = weld(&[&points], 1e-7);
-        let welded: Vec<[u32; 3]> = sound(faces, &stands);
+        let welded: Vec<[u32; 3]> = sound(&outward(faces, &points), &stands);
         let used = used(&welded, &stands, diagonal);
         let fine = Graph::new(points.len(), &edges(&welded, &points));
         let (samples, mut paths) = farthest(&fine, &points, &used, samples.max(1));
