@@ -101,6 +101,20 @@ fn pieces_without_a_handle_and_loose_vertices_follow() {
 }
 
 #[test]
+fn a_piece_with_one_handle_follows_it_whole() {
+    let horse = horse(1500);
+    let solver = solver(horse.faces(), horse.reference());
+    let one = solver.weights(&[7], &Parameters::default()).expect("weights");
+    assert_optimal(&one);
+    assert!(one.values.iter().all(|&w| w == 1.0) && one.warnings.is_empty(), "{:?}", one.warnings);
+    // Back and forth between one and two.
+    let two = solver.update(&one, &[7, 200], &Parameters::default()).expect("weights");
+    assert_optimal(&two);
+    let again = solver.update(&two, &[7], &Parameters::default()).expect("weights");
+    assert_eq!(again.values, one.values);
+}
+
+#[test]
 fn a_seam_is_no_boundary() {
     let (faces, mut positions) = grid(9);
     let whole = solve(&faces, &positions, &[0, 8, 72]);

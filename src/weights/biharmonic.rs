@@ -129,13 +129,19 @@ impl Biharmonic {
     /// uses again need not be fetched.
     fn column(&self, places: &[u32], handle: usize) -> Column {
         let own = places[handle];
-        let start = levels::guess(&self.levels, places, own);
         let fine = self.finest();
+        if fine.is_alone(places, own) {
+            return fine.whole(places, own);
+        }
+        let start = levels::guess(&self.levels, places, own);
         Column { factor: None, ..box_problem::solve(&fine.quadratic, fine.members_around(own), start) }
     }
 
     /// The column of a handle that has stayed, while others came and went.
     fn updated(&self, before: &Column, places: &[u32], old_places: &[u32], handle: usize) -> Column {
+        if self.finest().is_alone(places, places[handle]) {
+            return self.finest().whole(places, places[handle]);
+        }
         let members = self.finest().members_around(places[handle]);
         let piece = self.finest().surface.piece[places[handle] as usize];
         let here = |place: &&u32| self.finest().surface.piece[**place as usize] == piece;
@@ -168,6 +174,9 @@ impl Biharmonic {
     /// The column of a handle that has moved: nearly what it was.
     fn carried(&self, before: &Column, places: &[u32], handle: usize) -> Column {
         let members = self.finest().members_around(places[handle]);
+        if self.finest().is_alone(places, places[handle]) {
+            return self.finest().whole(places, places[handle]);
+        }
         let mut column = self.finest().open(places, places[handle]);
         for &v in members {
             let v = v as usize;

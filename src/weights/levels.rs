@@ -47,6 +47,19 @@ impl Level {
         &self.members[self.surface.piece[place as usize] as usize]
     }
 
+    /// Whether no other of the handles is on the piece of `own`.
+    pub fn is_alone(&self, places: &[u32], own: u32) -> bool {
+        let piece = self.surface.piece[own as usize];
+        places.iter().all(|&place| place == own || self.surface.piece[place as usize] != piece)
+    }
+
+    /// The column of a handle that is alone on its piece: all of it follows.
+    pub fn whole(&self, places: &[u32], own: u32) -> Column {
+        let mut column = self.open(places, own);
+        self.members_around(own).iter().for_each(|&v| column.weights[v as usize] = 1.0);
+        column
+    }
+
     /// A column of zeros, free but at handles and on other pieces; `own` is its handle.
     pub fn open(&self, places: &[u32], own: u32) -> Column {
         let n = self.surface.positions.len();
