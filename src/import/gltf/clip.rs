@@ -3,7 +3,7 @@
 use super::accessor::Accessor;
 use super::buffers::Buffers;
 use super::document::Document;
-use super::nodes::{Local, rotation, slerp};
+use super::nodes::{Local, rotation, slerp, unit};
 use crate::import::ImportError;
 use crate::import::limits::Budget;
 use crate::warning::Warning;
@@ -194,7 +194,12 @@ impl Channel {
                 + (3.0 * s2 - 2.0 * s3) * p1
                 + span * (s3 - s2) * m1
         };
-        (0..self.width).map(hermite).collect()
+        let value: Vec<f64> = (0..self.width).map(hermite).collect();
+        match (self.property, value.as_slice()) {
+            // Between keys the length is no rounding of whoever wrote them (glTF 2.0, appendix C.5).
+            (Property::Rotation, &[x, y, z, w]) => unit(DQuat::from_xyzw(x, y, z, w)).to_array().to_vec(),
+            _ => value,
+        }
     }
 }
 

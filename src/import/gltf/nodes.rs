@@ -65,7 +65,7 @@ pub fn rotation(q: DQuat) -> DQuat {
 }
 
 /// A quaternion at unit length; the identity for one without a direction.
-fn unit(q: DQuat) -> DQuat {
+pub fn unit(q: DQuat) -> DQuat {
     let length = q.length();
     if length > 1e-12 && length.is_finite() { q / length } else { DQuat::IDENTITY }
 }
