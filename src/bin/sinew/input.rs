@@ -70,6 +70,15 @@ impl Input {
         };
         Ok(open_in_order(&files, &options)?)
     }
+
+    /// Reads one more file as a mesh that stands still, its vertices numbered as those of the input are.
+    pub fn open_still(&self, path: &Path) -> Result<Imported, Refusal> {
+        let options = Options { weld: !self.no_weld, ..Options::default() };
+        let mut mesh = open_in_order(&[read(path)?], &options)?;
+        // It stands still, as it should.
+        mesh.warnings.retain(|warning| warning.code != "no-animation");
+        Ok(mesh)
+    }
 }
 
 /// Prints warnings to standard error.

@@ -7,10 +7,9 @@ use crate::output::{self, say};
 use clap::Args;
 use serde_json::json;
 use sinew::clock;
-use sinew::import::{File, Options, open_in_order};
 use sinew::transfer::propose::Proposer;
 use sinew::warning::Warning;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
 /// Arguments of `sinew propose`.
 #[derive(Args)]
@@ -35,8 +34,7 @@ impl Propose {
     /// Reads both meshes, proposes, and prints or writes the proposals.
     pub fn run(&self) -> Result<(), Refusal> {
         let source = self.input.open()?;
-        let name = self.target.display().to_string();
-        let target = open_in_order(&[File { name, bytes: read(&self.target)? }], &Options::default())?;
+        let target = self.input.open_still(&self.target)?;
         let points = lists::vertices(&self.points)?;
         let pairs = self.pairs.as_deref().map(lists::pairs).transpose()?.unwrap_or_default();
         let known: Vec<Option<u32>> =
@@ -70,8 +68,4 @@ impl Propose {
         });
         output::write_report(path, &report)
     }
-}
-
-fn read(path: &Path) -> Result<Vec<u8>, Refusal> {
-    std::fs::read(path).map_err(|error| Refusal(format!("{} cannot be read: {error}", path.display())))
 }

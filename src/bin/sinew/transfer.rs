@@ -12,7 +12,7 @@ use glam::DVec3;
 use serde_json::{Map, Value, json};
 use sinew::clock;
 use sinew::export::skin::{Influences, Skin, SkinPose, light};
-use sinew::import::{File, Imported, Options, natural_order, open_in_order};
+use sinew::import::{File, Imported, natural_order};
 use sinew::mesh::ball::unit_ball;
 use sinew::observer::Silent;
 use sinew::sequence::{Pose, Sequence};
@@ -60,7 +60,7 @@ pub struct Transfer {
     #[arg(long, value_name = "FILE", num_args = 1..)]
     truth: Vec<PathBuf>,
     /// Transfer by every method and write how far each is from the truth
-    #[arg(long, value_name = "FILE.json", requires = "truth")]
+    #[arg(long, value_name = "FILE.json", requires = "truth", conflicts_with_all = ["out", "out_poses", "report"])]
     compare: Option<PathBuf>,
     /// By gradients or posed: vertices of the target that go exactly as far as the source does there, as feet that stand
     #[arg(long, value_name = "VERTEX", value_delimiter = ',')]
@@ -92,17 +92,15 @@ impl Transfer {
     pub fn run(&self) -> Result<(), Refusal> {
         let start = clock::seconds();
         let source = self.input.open()?;
-        let target = mesh(std::slice::from_ref(&self.target))?;
+        let target = self.input.open_still(&self.target)?;
         let pairs = lists::pairs(&self.pairs)?;
         let reading = clock::seconds() - start;
         if let Some(path) = &self.compare {
             return self.run_comparison(path, &source, &target, &pairs);
         }
         let parameters = self.parameters();
+        self.refuse_what_the_method_does_not_know(parameters.method)?;
         if parameters.method.moves_vertices() {
-            if self.light {
-                return Err(Refusal("a skin needs handles, and this method has none: leave --light out".to_owned()));
-            }
             return self.run_by_faces(&source, &target, &pairs, &parameters, reading);
         }
         let result = transfer(&source.sequence, &target.sequence, &pairs, &parameters, &mut Silent)?;
@@ -110,7 +108,7 @@ impl Transfer {
         let positions = result.poses(target.sequence.reference());
         let blending = clock::seconds() - begun;
         let moved = moved(&source.sequence, &target.sequence, positions)?;
-        let errors = if self.truth.is_empty() { None } else { Some(measure(&target.sequence, &moved, &self.truth)?) };
+        let errors = if self.truth.is_empty() { None } else { Some(self.measure(&target.sequence, &moved)?) };
         if let Some(folder) = &self.out_poses {
             write_poses(folder, &moved)?;
         }
@@ -141,6 +139,42 @@ impl Transfer {
         Ok(())
     }
 
+    /// How far the moving target is from the truth.
+    fn measure(&self, target: &Sequence, moved: &Sequence) -> Result<Errors, Refusal> {
+        let files = truth_files(&self.truth)?;
+        let (_, radius) = unit_ball(target.faces(), target.reference());
+        if files.len() != moved.poses().len() {
+            let [truth, poses] = [counted(files.len(), "true pose"), counted(moved.poses().len(), "pose")];
+            return Err(Refusal(format!("there are {truth} for {poses}; one file a pose is needed")));
+        }
+        let mut errors = Errors { mean: 0.0, of_poses: Vec::new(), within: vec![0.0; BOUNDS.len()] };
+        for (path, pose) in files.iter().zip(moved.poses()) {
+            let truth = self.input.open_still(path)?.sequence;
+            if truth.reference().len() != pose.positions.len() {
+                let [found, expected] = [truth.reference().len(), pose.positions.len()];
+                return Err(Refusal(format!("{} has {found} vertices, the target has {expected}", path.display())));
+            }
+            let distances = distances(&pose.positions, truth.reference(), radius);
+            let count = distances.len().max(1) as f64;
+            errors.of_poses.push(distances.iter().sum::<f64>() / count);
+            for (within, bound) in errors.within.iter_mut().zip(BOUNDS) {
+                *within += distances.iter().filter(|d| **d <= bound).count() as f64 / count / files.len() as f64;
+            }
+        }
+        errors.mean = errors.of_poses.iter().sum::<f64>() / errors.of_poses.len().max(1) as f64;
+        Ok(errors)
+    }
+
+    fn refuse_what_the_method_does_not_know(&self, method: Method) -> Result<(), Refusal> {
+        let refuse = |what: &str| Err(Refusal(what.to_owned()));
+        match method.moves_vertices() {
+            true if self.light => refuse("a skin needs handles, and this method has none: leave --light out"),
+            true if self.variant != Variant::Default => refuse("this method has no variants: leave --variant out"),
+            false if !self.pin.is_empty() => refuse("--pin is for the methods gradients and posed"),
+            _ => Ok(()),
+        }
+    }
+
     fn parameters(&self) -> Parameters {
         let default = Parameters::default();
         Parameters {
@@ -156,22 +190,6 @@ impl Transfer {
             ..default
         }
     }
-}
-
-/// Reads files as one sequence, without welding: vertices keep their numbers.
-fn mesh(paths: &[PathBuf]) -> Result<Imported, Refusal> {
-    let read = |path: &PathBuf| {
-        let name = path.display().to_string();
-        match std::fs::read(path) {
-            Ok(bytes) => Ok(File { name, bytes }),
-            Err(error) => Err(Refusal(format!("{name} cannot be read: {error}"))),
-        }
-    };
-    let files = paths.iter().map(read).collect::<Result<Vec<_>, _>>()?;
-    let mut mesh = open_in_order(&files, &Options { weld: false, ..Options::default() })?;
-    // A target stands still, as it should.
-    mesh.warnings.retain(|warning| warning.code != "no-animation");
-    Ok(mesh)
 }
 
 /// The target with the poses of the source.
@@ -221,31 +239,6 @@ fn truth_files(paths: &[PathBuf]) -> Result<Vec<PathBuf>, Refusal> {
     }
     natural_order(&mut files);
     Ok(files.into_iter().map(|file| PathBuf::from(file.name)).collect())
-}
-
-fn measure(target: &Sequence, moved: &Sequence, paths: &[PathBuf]) -> Result<Errors, Refusal> {
-    let files = truth_files(paths)?;
-    let (_, radius) = unit_ball(target.faces(), target.reference());
-    if files.len() != moved.poses().len() {
-        let [truth, poses] = [counted(files.len(), "true pose"), counted(moved.poses().len(), "pose")];
-        return Err(Refusal(format!("there are {truth} for {poses}; one file a pose is needed")));
-    }
-    let mut errors = Errors { mean: 0.0, of_poses: Vec::new(), within: vec![0.0; BOUNDS.len()] };
-    for (path, pose) in files.iter().zip(moved.poses()) {
-        let truth = mesh(std::slice::from_ref(path))?.sequence;
-        if truth.reference().len() != pose.positions.len() {
-            let [found, expected] = [truth.reference().len(), pose.positions.len()];
-            return Err(Refusal(format!("{} has {found} vertices, the target has {expected}", path.display())));
-        }
-        let distances = distances(&pose.positions, truth.reference(), radius);
-        let count = distances.len().max(1) as f64;
-        errors.of_poses.push(distances.iter().sum::<f64>() / count);
-        for (within, bound) in errors.within.iter_mut().zip(BOUNDS) {
-            *within += distances.iter().filter(|d| **d <= bound).count() as f64 / count / files.len() as f64;
-        }
-    }
-    errors.mean = errors.of_poses.iter().sum::<f64>() / errors.of_poses.len().max(1) as f64;
-    Ok(errors)
 }
 
 /// Distances of vertices from the truth in radii, the mean difference removed.

@@ -2,7 +2,7 @@
 //!
 //! The curve of Yang, Gao, Lai, Rosin & Xia 2018, Fig. 14.
 
-use super::{BOUNDS, Errors, Transfer, measure, moved};
+use super::{BOUNDS, Errors, Transfer, moved};
 use crate::Refusal;
 use crate::output::{self, say};
 use glam::DVec3;
@@ -48,7 +48,7 @@ impl Transfer {
             let positions = positions(source, target, pairs, &parameters)?;
             let seconds = clock::seconds() - start;
             let sequence = moved(&source.sequence, &target.sequence, positions)?;
-            rows.push(Row { name, errors: measure(&target.sequence, &sequence, &self.truth)?, seconds });
+            rows.push(Row { name, errors: self.measure(&target.sequence, &sequence)?, seconds });
         }
         output::write_report(path, &report(source, target, pairs, &rows))?;
         print(source, target, &rows);

@@ -133,9 +133,10 @@ impl Zoo {
     /// Why a creature cannot be made.
     fn refusal(&self, name: &str) -> Refusal {
         match &self.motion {
-            Some(motion) if NAMES.contains(&name) => {
+            Some(motion) if NAMES.contains(&name) && !motions(name).contains(&motion.as_str()) => {
                 Refusal(format!("the {name} has no motion {motion}; it has: {}", motions(name).join(", ")))
             }
+            _ if NAMES.contains(&name) => Refusal(format!("the {name} cannot be made of so many faces: ask for fewer")),
             _ => unknown(name),
         }
     }
