@@ -1,4 +1,4 @@
-/** Plots of the key points: the error by their number, energies by iteration, candidates by error. */
+/** Plots of the key points: the error by their number, energies by round, candidates by error. */
 import { svg } from './dom.js';
 import { number } from './format.js';
 import { axis, frame, HEIGHT, FOOT, tick, ticksBetween, WIDTH } from './plot.js';

@@ -70,10 +70,15 @@ export function stageStrip(app) {
       const place = placeIn(app, view);
       range.max = count - 1;
       range.valueAsNumber = place;
-      range.setAttribute('aria-label', view.name);
-      const said = view.where?.(app, place) ?? '';
-      range.setAttribute('aria-valuetext', `${place + 1} of ${count}, ${said}`);
-      words.textContent = `${view.name} ${place + 1} of ${count}${said ? ` · ${said}` : ''}`;
+      range.setAttribute('aria-label', view.label);
+      words.textContent = [counted(view, place, count), view.where?.(app, place)].filter(Boolean).join(' · ');
+      range.setAttribute('aria-valuetext', words.textContent);
     },
   };
+}
+
+/** Which position it is, in words. How things were before the first is shown too, but is none of those that are counted. */
+function counted({ name, start }, place, count) {
+  if (start) return place ? `${name} ${place} of ${count - 1}` : start;
+  return name && `${name} ${place + 1} of ${count}`;
 }

@@ -118,6 +118,52 @@ fn scrubbing_shows_other_pictures_at_once_on_webgl2() {
     scrubbing_shows_other_pictures_at_once(Backend::WebGl2);
 }
 
+/// What is said of a place in a view under the picture: the last for a place that is too far.
+fn said(page: &mut Page, view: &str, place: usize) -> String {
+    let words = page.evaluate(&format!(
+        "sinew.app.setView('{view}'); sinew.app.setPlace({place}); document.querySelector('.strip output').textContent"
+    ));
+    words.as_str().unwrap_or_default().to_owned()
+}
+
+#[test]
+#[ignore = "drives the built page in Chromium: run by `cargo xtask test`"]
+fn how_things_were_before_the_first_is_not_counted() {
+    let mut page = opened(Backend::WebGl2, Screen::Still, SMALL);
+    let finest = page.evaluate("new Set(sinew.app.result.rounds.at(-1)).size").as_u64().unwrap_or(0);
+    let merges = finest.saturating_sub(1);
+    assert_eq!(said(&mut page, "merging", 0), format!("Before the first merge · {finest} parts"));
+    assert!(said(&mut page, "merging", 1).starts_with(&format!("Merge 1 of {merges} · {merges} parts")));
+    assert!(said(&mut page, "merging", 1000).starts_with(&format!("Merge {merges} of {merges} · 1 part")));
+    page.evaluate("delete sinew.app.places.merging; sinew.app.changed('place')");
+    let count = page.evaluate("sinew.app.place");
+    let legend = page.evaluate("document.querySelector('.legend').innerText");
+    assert!(
+        legend.as_str().is_some_and(|words| words.contains(&format!("after {count} merges"))),
+        "{legend} for {count}"
+    );
+    assert_eq!(
+        ["Before the cut", "After the cut"].map(str::to_owned),
+        [0, 1].map(|place| said(&mut page, "cut", place))
+    );
+    key_points(&mut page);
+    let replacements = page.evaluate("sinew.app.doc.run.replacements.length");
+    assert_eq!(said(&mut page, "replacement", 0), "As they were chosen");
+    assert!(
+        said(&mut page, "replacement", 1000).starts_with(&format!("Replacement {replacements} of {replacements} · "))
+    );
+    assert!(said(&mut page, "alternation", 0).starts_with("Before the first round · "));
+    // The legend and the plot mean the same pose by the hardest, and the plot ends where the rounds do.
+    let last = said(&mut page, "alternation", 1000);
+    let hardest = "(words => words.match(/pose (\\d+), the hardest/)?.[1])";
+    let legend = page.evaluate(&format!("{hardest}(document.querySelector('.legend').innerText)"));
+    let plot = page.evaluate(&format!("{hardest}(document.querySelector('#panel').textContent)"));
+    assert_eq!(legend, plot);
+    let rounds = page
+        .evaluate(&format!("sinew.app.keypoints.current.energies[{} - 1].length - 1", legend.as_str().unwrap_or("0")));
+    assert!(last.starts_with(&format!("Round {rounds} of {rounds} · ")), "{last}");
+}
+
 #[test]
 #[ignore = "drives the built page in Chromium: run by `cargo xtask test`"]
 fn epsilon_is_dragged_on_the_histogram() {

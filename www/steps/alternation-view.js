@@ -7,7 +7,7 @@ const ERROR = 'cividis';
 /** The most handles that a vertex follows in the picture. */
 const MOST = 16;
 
-/** The pose that is hardest to follow. */
+/** The pose that is hardest to follow: the one with the largest error. */
 export const hardest = ({ fit_errors: errors }) => errors.reduce((best, error, pose) => (error > errors[best] ? pose : best), 0);
 
 const skins = new WeakMap();
@@ -34,10 +34,27 @@ function skinOf(current, vertices) {
   return skins.get(current);
 }
 
-/** #V: how far each vertex is from where the pose has it after a round, over half the diagonal. */
+/** The radius of the whole, in which errors are stated: of the ball around the middle of its box (src/mesh/ball.rs). */
+function radiusOf({ faces, reference }) {
+  const low = [Infinity, Infinity, Infinity];
+  const high = [-Infinity, -Infinity, -Infinity];
+  for (const v of faces) {
+    for (let k = 0; k < 3; k++) {
+      low[k] = Math.min(low[k], reference[3 * v + k]);
+      high[k] = Math.max(high[k], reference[3 * v + k]);
+    }
+  }
+  const from = low.map((x, k) => (x + high[k]) / 2);
+  let radius = 0;
+  for (const v of faces) radius = Math.max(radius, Math.hypot(reference[3 * v] - from[0], reference[3 * v + 1] - from[1], reference[3 * v + 2] - from[2]));
+  return radius || 1;
+}
+
+/** #V: how far each vertex is from where the pose has it after a round, in radii of the whole. */
 function distances(app, known, round) {
   if (!known.fields.has(round)) {
-    const { reference, diagonal } = app.sequence;
+    const { reference } = app.sequence;
+    known.radius ??= radiusOf(app.sequence);
     const wanted = poseOf(app.sequence, known.pose);
     const { handles, indices, weights, K, matrices } = known.skin;
     const maps = matrices.subarray(12 * handles * round, 12 * handles * (round + 1));
@@ -53,7 +70,7 @@ function distances(app, known, round) {
         }
         sum += (at - wanted[3 * v + r]) ** 2;
       }
-      field[v] = (2 * Math.sqrt(sum)) / diagonal;
+      field[v] = Math.sqrt(sum) / known.radius;
     }
     known.fields.set(round, field);
   }
@@ -73,6 +90,7 @@ export const alternation = {
   label: 'Fit',
   title: 'Rotations of groups and maps of points are found in turn, and the energy falls (§3.4)',
   name: 'Round',
+  start: 'Before the first round',
   moves: true,
   count: (app) => (ready(app) ? app.keypoints.current.energies[hardest(app.keypoints.current)].length : 1),
   first: (app) => alternation.count(app) - 1,
@@ -96,6 +114,6 @@ export const alternation = {
     if (!ready(app)) return { kind: 'words', text: 'Known once the points are fitted.' };
     const known = skinOf(app.keypoints.current, app.sequence.sizes.vertices);
     const top = topOf(app, known);
-    return { kind: 'scalar', map: ERROR, marks: [0, top / 2, top], unit: `distance from pose ${known.pose + 1}, the hardest, in halves of the diagonal; ${plural(app.keypoints.current.points.length, 'point')}` };
+    return { kind: 'scalar', map: ERROR, marks: [0, top / 2, top], unit: `distance from pose ${known.pose + 1}, the hardest, in radii of the whole; ${plural(app.keypoints.current.points.length, 'point')}` };
   },
 };

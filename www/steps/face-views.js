@@ -42,10 +42,12 @@ const cornersNow = ({ stage, sequence: { faces } }, face) => stage.vertices(face
 
 const centre = (corners) => [0, 1, 2].map((k) => (corners[k] + corners[3 + k] + corners[6 + k]) / 3);
 
+const tooMany = ({ sequence }) => sequence.sizes.faces > MOST_FACES;
+
 function paintDifferences(app, pose) {
   const { stage, sequence } = app;
   stage.boundaries = false;
-  if (sequence.sizes.faces > MOST_FACES) stage.paint(['paint_clay']);
+  if (tooMany(app)) stage.paint(['paint_clay']);
   else stage.paint(['paint_scalar', differences(sequence, poseOf(sequence, pose), faceOf(app)), 0, SIXTH, 'viridis']);
 }
 
@@ -56,12 +58,16 @@ export const gradients = {
   faces: true,
   paint: (app) => paintDifferences(app, poseShown(app)),
   follow: paintDifferences,
-  legend: (app) => ({
-    kind: 'scalar',
-    map: 'viridis',
-    marks: [0, SIXTH / 2, SIXTH],
-    unit: `‖Mᵢ − Mⱼ‖² to face ${faceOf(app)}, in this pose; 2 is a turn of 60°`,
-  }),
+  legend(app) {
+    const face = faceOf(app);
+    if (tooMany(app)) return { kind: 'words', text: `Arrows: the frame of face ${face}, dashed in the reference. There are too many faces to paint them pose by pose.` };
+    return {
+      kind: 'scalar',
+      map: 'viridis',
+      marks: [0, SIXTH / 2, SIXTH],
+      unit: `‖Mᵢ − Mⱼ‖² to face ${face}, in this pose; 2 is a turn of 60°. Arrows: its frame, dashed in the reference`,
+    };
+  },
   overlay(app) {
     const face = faceOf(app);
     const corners = cornersNow(app, face);
@@ -147,7 +153,7 @@ export const dual = {
     kind: 'scalar',
     map: 'viridis',
     marks: [WEIGHTS[0], 1, WEIGHTS[1]],
-    unit: `heaviest edge of each face, in averages, logarithmic; ${plural(app.result.dual.length / 2, 'edge')} in all`,
+    unit: `heaviest edge of each face, in averages, logarithmic; ${plural(app.result.dual.length / 2, 'edge')} in all, in red where heavier than ε`,
   }),
   overlay(app) {
     const { result, stage, sequence } = app;

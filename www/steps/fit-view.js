@@ -9,10 +9,11 @@ export const FIT_VIEW = {
   label: 'Fit',
   title: 'The source is bent into the target, ever more strongly to the nearest point that faces the same way (Sumner and Popović 2004, §5)',
   name: 'Round',
+  start: 'As it is',
   moves: true,
   count: (app) => (ready(app) ? app.transfer.motion.rounds : 1),
   first: (app) => FIT_VIEW.count(app) - 1,
-  where: (app, index) => (index > 1 ? 'pulled to the target' : ['as it is', 'by the points alone'][index]),
+  where: (app, index) => ['', 'by the points alone'][index] ?? 'pulled to the target',
   paint(app, index) {
     clay(app);
     if (ready(app)) app.hold({ poses: app.transfer.motion.shapes }, index);

@@ -5,6 +5,7 @@ import { h, show } from '../dom.js';
 import { duration, number, plural } from '../format.js';
 import { lesson, stageLesson } from '../lesson.js';
 import { placeIn } from '../stages.js';
+import { hardest } from './alternation-view.js';
 import { pointList } from './point-list.js';
 import { KEY_POINT_VIEWS } from './point-views.js';
 import { candidates, pointOf } from './search-views.js';
@@ -35,7 +36,7 @@ function build(app) {
   const list = listSection(app);
   const how = [
     parameterFold(app),
-    fold('Energy by iteration', { content: [energy] }),
+    fold('Energy by round', { content: [energy] }),
     fold('How each was chosen', { content: [choices] }),
   ];
   const update = () => {
@@ -87,9 +88,8 @@ function curvePlot(app) {
 
 function energyPlot(app) {
   const { current } = app.keypoints;
-  const series = current?.energies ?? [];
-  const worst = series.reduce((best, values, i) => ((values.at(-1) ?? 0) > (series[best].at(-1) ?? 0) ? i : best), 0);
-  const plot = fallingLines(series, worst, 'Energy of each pose by iteration');
+  const worst = current ? hardest(current) : 0;
+  const plot = fallingLines(current?.energies ?? [], worst, 'Energy of each pose by round');
   return plot ? [plot, h('p', { class: 'small faint' },
     `Energy of Eq. 5 after each round, over where it began, a line a pose; in colour pose ${worst + 1}, the hardest. It never rises.`)]
     : [h('p', { class: 'small faint' }, 'Known once the points are fitted.')];

@@ -1,7 +1,10 @@
 /** What the stages paint with. */
+import { h } from '../dom.js';
 
 /** Styles of `Viewport.mark_faces`. */
 export const MARK = { highlight: 0, point: 1, newest: 2 };
+/** Their colours, as in src/view/frame.rs. */
+const INKS = ['oklch(0.66 0.2 36)', 'oklch(0.6 0.15 255)', 'oklch(0.82 0.16 95)'];
 /** Scalar maps end at this quantile: distances have heavy tails. */
 const TOP = 0.98;
 const tops = new WeakMap();
@@ -14,6 +17,9 @@ export function topOf(field) {
   }
   return tops.get(field);
 }
+
+/** The colour of a mark, before the words that say in a legend what it means. */
+export const swatch = (style) => h('span', { class: 'chip', style: { background: INKS[style] } });
 
 export function scalar(app, values, low, high, map) {
   app.stage.boundaries = false;

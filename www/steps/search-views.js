@@ -1,6 +1,6 @@
 /** The stages of the search for key points: candidates, the greedy choice, replacement. See views.js for what a view is. */
 import { number, plural } from '../format.js';
-import { MARK } from './paint.js';
+import { MARK, swatch } from './paint.js';
 
 const ERROR = 'cividis';
 
@@ -32,7 +32,10 @@ export const spread = {
     app.stage.mark(facesAt(app.sequence.faces, [run.candidates[index]]), MARK.newest);
   },
   pins: () => [],
-  legend: ({ doc: { run } }) => (run ? { kind: 'words', text: `${plural(run.candidates.length, 'candidate')}: key points are chosen among these.` } : unknown),
+  legend: ({ doc: { run } }) => (!run ? unknown : {
+    kind: 'words',
+    text: [swatch(MARK.point), `${plural(run.candidates.length, 'candidate')}: key points are chosen among these.\u2003`, swatch(MARK.newest), 'The newest'],
+  }),
 };
 
 export const candidates = {
@@ -67,7 +70,7 @@ export const candidates = {
       map: ERROR,
       marks: [low, (low + high) / 2, high],
       exact: true,
-      unit: `error with this as point ${pointOf(run, index)}, ${plural(step.candidates.length, 'candidate')} tried`,
+      unit: [swatch(MARK.point), `${plural(step.candidates.length, 'candidate')} tried as point ${pointOf(run, index)}; around each, the error that it leaves`],
     };
   },
 };
@@ -84,11 +87,12 @@ export const replacement = {
   label: 'Replacement',
   title: 'Each point may give way to a candidate that serves better now (§3.5, second stage)',
   name: 'Replacement',
+  start: 'As they were chosen',
   count: ({ doc: { run } }) => (run?.replacements.length ?? 0) + 1,
   first: ({ doc: { run } }) => run?.replacements.length ?? 0,
   where({ doc: { run } }, index) {
     const swap = run?.replacements[index - 1];
-    return swap ? `vertex ${swap.from} gave way to ${swap.to}: error ${number(swap.error, 2)}` : 'as they were chosen';
+    return swap ? `vertex ${swap.from} gave way to ${swap.to}: error ${number(swap.error, 2)}` : '';
   },
   paint(app, index) {
     clay(app);
@@ -102,7 +106,7 @@ export const replacement = {
     return sets(run)[index].map((vertex, i) => ({ index: i, pin: { vertex, colour: i, selected: vertex === swap?.to } }));
   },
   legend: ({ doc: { run } }) => (!run ? unknown : { kind: 'words', text: run.replacements.length
-    ? `${plural(run.replacements.length, 'point')} gave way to a better one. The place that was left is marked.`
+    ? [swatch(MARK.newest), `The place that was left. ${plural(run.replacements.length, 'replacement')} in all, each for the better.`]
     : 'No candidate served better than a point that was chosen.' }),
 };
 

@@ -1,6 +1,6 @@
 /** The stages after clustering: the merge tree cut by cut, refinement, the band and the cut. See views.js for what a view is. */
 import { number, percent, plural } from '../format.js';
-import { MARK, paintParts } from './paint.js';
+import { MARK, paintParts, swatch } from './paint.js';
 
 /** Part numbers of the finest parts after some merges, numbered from 0 in the order of their first faces. */
 export function merged({ merges, rounds }, count) {
@@ -39,6 +39,7 @@ export const merging = {
   label: 'Merging',
   title: 'The finest parts, merged one by one: always the two neighbours that cost least rigidity',
   name: 'Merge',
+  start: 'Before the first merge',
   needs: ({ result }) => result.merges.length > 0,
   count: ({ result }) => (result?.merges.length ?? 0) + 1,
   first: mergesNow,
@@ -93,7 +94,7 @@ export const refined = {
   legend: (app) => ({
     kind: 'words',
     text: app.result.merges.length
-      ? `${plural(refinedFaces(app).length, 'face')} went to a part whose motion explains ${refinedFaces(app).length === 1 ? 'it' : 'them'} better. Residual ${number(1000 * app.result.residual_before_smoothing)} ‰ of its size.`
+      ? [swatch(MARK.highlight), `${plural(refinedFaces(app).length, 'face')} went to a part whose motion explains ${refinedFaces(app).length === 1 ? 'it' : 'them'} better. Residual ${number(1000 * app.result.residual_before_smoothing)} ‰ of its size.`]
       : `The clusters. Residual ${number(1000 * app.result.residual_before_smoothing)} ‰ of its size.`,
   }),
 };
@@ -112,10 +113,9 @@ export const cut = {
   id: 'cut',
   label: 'Band and cut',
   title: 'The band around each boundary, and where the cheapest cut runs in it (§3.4)',
-  name: 'Boundary',
   count: () => 2,
   first: () => 1,
-  where: (app, index) => (index ? 'after the cut' : 'before the cut'),
+  where: (app, index) => (index ? 'After the cut' : 'Before the cut'),
   paint(app, index) {
     const { result, stage } = app;
     stage.boundaries = false;
@@ -129,7 +129,7 @@ export const cut = {
     return {
       kind: 'sets',
       a: `In a band: ${percent(band / result.band.length)} of the faces`,
-      b: `Stays: ${percent(1 - band / result.band.length)}`,
+      b: [`Stays: ${percent(1 - band / result.band.length)}`, swatch(MARK.point), 'Along the boundaries'],
       text: `${plural(cutFaces(app).length, 'face')} changed sides`,
     };
   },

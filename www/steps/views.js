@@ -3,12 +3,14 @@
  * with what one step found and says what its colours mean.
  *
  * A view is `{id, label, title, paint(app, place), legend(app)}`; the legend describes itself as
- * `{kind: 'scalar'|'sets'|'parts'|'words', …}` for dock.js. One with positions also has what stages.js says, one that
- * draws over the picture what overlay.js says; `faces`: a click chooses a face; `needs(app)`: whether there is such a stage.
+ * `{kind: 'scalar'|'sets'|'parts'|'words', …}` for dock.js, and in place of words may have a list of words and swatches.
+ * One with positions also has what stages.js says, and for strip.js `name` (of a position that is counted) and `start` (what
+ * the first is called, where it is how things were before: it is not counted). One that draws over the picture has what
+ * overlay.js says; `faces`: a click chooses a face; `needs(app)`: whether there is such a stage.
  */
 import { number, percent, plural } from '../format.js';
 import { dual, gradients } from './face-views.js';
-import { MARK, paintParts as parts, scalar, topOf } from './paint.js';
+import { MARK, paintParts as parts, scalar, swatch, topOf } from './paint.js';
 import { cut, merging, refined } from './tree-views.js';
 
 /** Deformation is shown over this many powers of ten. */
@@ -76,10 +78,12 @@ export const VIEWS = [
       app.stage.paint(['paint_set', mask]);
       app.stage.mark(Uint32Array.from(features.slice(0, index + 1), ({ face }) => face), MARK.point);
     },
-    legend: ({ result }) => ({
-      kind: 'words',
-      text: result.features.length ? `${plural(result.features.length, 'feature face')}, farthest first; each takes its region out of the search.` : 'No feature was found.',
-    }),
+    legend: ({ result }) => (result.features.length ? {
+      kind: 'sets',
+      a: 'Its region',
+      b: ['The rest', swatch(MARK.point), 'Features so far'],
+      text: `${result.features.length} in all, farthest first`,
+    } : { kind: 'words', text: 'No feature was found.' }),
   },
   {
     id: 'clusters',
