@@ -1,14 +1,32 @@
 /** What can be taken away as a file: pictures, meshes, numbers. */
 import { h } from './dom.js';
 import { number } from './format.js';
+import { boxesOf, halves, together } from './together.js';
 
 /** The picture as it is, or of a size of its own in pixels. @param {[number, number]|null} size */
 export async function savePicture(app, size = null) {
   try {
-    saveBlob(await app.stage.picture(size), `${fileName(app)}.png`);
+    saveBlob(await pictureOf(shownFigures(app), size), `${fileName(app)}.png`);
   } catch (error) {
     app.say(error.message);
   }
+}
+
+/** The figures that are seen, from left to right; another method's lies over the source. */
+export const shownFigures = ({ stage, second, third }) =>
+  [third ?? stage, second].filter((figure) => figure?.host.getBoundingClientRect().width >= 1);
+
+/** What figures show together, as a PNG. @param {import('./stage.js').Stage[]} figures @param {[number, number]|null} size */
+export async function pictureOf(figures, size = null) {
+  if (figures.length === 1) return figures[0].picture(size);
+  const boxes = size ? halves(size) : boxesOf(figures, devicePixelRatio);
+  // All are asked at once: they are to show the same moment.
+  const pictures = await Promise.all(figures.map((figure, i) => figure.picture(size && boxes[i].slice(2))));
+  const { canvas, put } = together(boxes);
+  for (const [i, picture] of pictures.entries()) put(await createImageBitmap(picture), i);
+  const blob = await new Promise((resolve) => canvas.toBlob(resolve, 'image/png'));
+  if (!blob) throw new Error('The browser could not save the picture.');
+  return blob;
 }
 
 const json = (value) => new Blob([`${JSON.stringify(value, null, 2)}\n`], { type: 'application/json' });
@@ -49,10 +67,10 @@ export async function saveRigid(app) {
 }
 
 /** The parts: labels of the faces, sizes, residuals, parameters. */
-export function partsFile({ sequence, result, parameters }) {
+export function partsFile({ sequence, result, parameters, wanted }) {
   return json({
     source: { name: sequence.name, ...sequence.sizes },
-    parameters: { ...parameters, epsilon: result.epsilon, gamma: result.gamma },
+    parameters: { ...parameters, parts: wanted, epsilon: result.epsilon, gamma: result.gamma },
     parts: result.parts,
     rigid_residual: result.rigid_residual,
     labels: Array.from(result.labels),
@@ -83,4 +101,12 @@ export function saveBlob(blob, name) {
   setTimeout(() => URL.revokeObjectURL(url), 10_000);
 }
 
-export const fileName = ({ sequence }) => `sinew-${(sequence?.name ?? 'picture').replace(/\.[^.]*$/, '').replace(/[^\w-]+/g, '-')}`;
+/** What a file is called after the source, without its ending. */
+export const fileName = ({ sequence }) => `sinew-${plainName(sequence, 'picture')}`;
+
+/** The same for what comes of both figures. */
+export const pairName = ({ sequence, target }) => `sinew-${plainName(target.sequence, 'target')}-like-${plainName(sequence, 'source')}`;
+
+/** The letters and digits of a name, in whatever language it is. */
+const plainName = (sequence, otherwise) =>
+  (sequence?.name ?? '').replace(/\.[^.]*$/, '').replace(/[^\p{L}\p{M}\p{N}_]+/gu, '-').replace(/^-|-$/g, '') || otherwise;

@@ -1,6 +1,7 @@
 /** The loop as a video, where the browser can record a canvas. */
 
 import { Cancelled } from './engine.js';
+import { boxesOf, together } from './together.js';
 
 const TYPES = ['video/webm;codecs=vp9', 'video/webm;codecs=vp8', 'video/webm', 'video/mp4'];
 const FRAMES = 30;
@@ -16,18 +17,19 @@ export const videoType = () => (globalThis.MediaRecorder && HTMLCanvasElement.pr
 
 /**
  * Plays the motion once from its beginning and records it.
- * @param {import('./stage.js').Stage} stage @param {import('./timeline.js').Timeline} timeline
+ * @param {import('./stage.js').Stage[]} figures side by side
+ * @param {import('./timeline.js').Timeline} timeline
  * @param {(share: number) => void} progress
  * @param {AbortSignal} [signal] stops it
  * @returns {Promise<{blob: Blob, extension: string}>}
  */
-export async function recordLoop(stage, timeline, progress, signal) {
+export async function recordLoop(figures, timeline, progress, signal) {
   const type = videoType();
-  if (!type || !stage.view) throw new Error('This browser cannot record the picture as a video.');
+  if (!type || !figures.length || !figures.every(({ view }) => view)) throw new Error('This browser cannot record the picture as a video.');
   if (!(timeline.seconds.at(-1) > 0)) throw new Error('It stands still: there is no motion to record.');
   const { time: before, playing, reference } = timeline;
-  const stream = stage.canvas.captureStream(FRAMES);
-  const recorder = new MediaRecorder(stream, { mimeType: type, videoBitsPerSecond: BITS });
+  const film = filmOf(figures);
+  const recorder = new MediaRecorder(film.stream, { mimeType: type, videoBitsPerSecond: BITS });
   const pieces = [];
   recorder.addEventListener('dataavailable', ({ data }) => data.size && pieces.push(data));
   const stopped = new Promise((resolve, reject) => {
@@ -40,23 +42,18 @@ export async function recordLoop(stage, timeline, progress, signal) {
   timeline.setPlaying(true);
   const begun = performance.now();
   const watch = setInterval(() => progress(Math.min(1, (performance.now() - begun) / length)), 200);
-  let pictures = 0;
-  const count = () => pictures++;
-  stage.addEventListener('drawn', count);
   await new Promise((resolve) => {
     const end = () => {
       const over = performance.now() - begun - length;
-      if (pictures >= FEWEST || over > GRACE) resolve();
+      if (film.pictures >= FEWEST || over > GRACE) resolve();
       else setTimeout(end, 100);
     };
     setTimeout(end, length);
     signal?.addEventListener('abort', resolve);
   });
-  stage.removeEventListener('drawn', count);
   clearInterval(watch);
   recorder.stop();
-  await stopped;
-  for (const track of stream.getTracks()) track.stop();
+  await stopped.finally(() => film.end());
   // The visitor goes on where they were.
   timeline.seek(before);
   if (reference) timeline.toggleReference();
@@ -64,4 +61,28 @@ export async function recordLoop(stage, timeline, progress, signal) {
   if (signal?.aborted) throw new Cancelled('Cancelled.');
   if (!pieces.length) throw new Error('The recording came out empty.');
   return { blob: new Blob(pieces, { type }), extension: type.includes('mp4') ? 'mp4' : 'webm' };
+}
+
+/** Puts figures together whenever one is drawn, until it ends. */
+function filmOf(figures) {
+  const { canvas, put } = together(boxesOf(figures, figures[0].pace.ratio));
+  const stop = new AbortController();
+  const film = {
+    /** Pictures of the first figure so far. */
+    pictures: 0,
+    stream: canvas.captureStream(FRAMES),
+    end() {
+      stop.abort();
+      for (const track of film.stream.getTracks()) track.stop();
+    },
+  };
+  figures.forEach((figure, i) => {
+    figure.addEventListener('drawn', () => {
+      put(figure.canvas, i);
+      if (i === 0) film.pictures++;
+    }, { signal: stop.signal });
+    // One that stands still would not be drawn.
+    figure.view.redraw();
+  });
+  return film;
 }

@@ -1,7 +1,9 @@
 //! Links, frames, files that hold everything, and what else can be taken away.
 
+use crate::harness::picture::Picture;
 use crate::harness::{Backend, Page, Screen, glb};
 use crate::opening::{SETTLED, opened};
+use crate::pairs::proposed;
 use base64::{Engine, engine::general_purpose::STANDARD};
 use serde_json::{Value, json};
 
@@ -159,13 +161,44 @@ fn what_is_taken_away_comes_back() {
         ));
         assert!(list.as_u64().is_some(), "{file}: {list}");
     }
-    let video = "import(new URL('www/video.js', location.href)).then(({ recordLoop }) => recordLoop(sinew.app.stage, sinew.app.timeline, () => {})).then(({ blob }) => blob)";
+    let video = "import(new URL('www/video.js', location.href)).then(({ recordLoop }) => recordLoop([sinew.app.stage], sinew.app.timeline, () => {})).then(({ blob }) => blob)";
     let film = bytes_of(&mut page, video);
     assert!(film.len() > 2000 && film.starts_with(&[0x1a, 0x45, 0xdf, 0xa3]), "a WebM of {} bytes", film.len());
     page.drop_files(&[("rigid.glb", &bytes)]);
     page.wait_until(&format!("sinew.state().source.name.includes('rigid') && {SETTLED}"), 30.0);
     let again = page.state();
     assert!(again["residual"].as_f64().is_some_and(|again| again < residual + 1e-4), "a rigid skin is rigid: {again}");
+}
+
+#[test]
+#[ignore = "drives the built page in Chromium: run by `cargo xtask test`"]
+fn a_picture_holds_both_figures() {
+    let mut page = proposed(Backend::WebGl2, Screen::Still);
+    let seam = page.evaluate("document.querySelector('#second').getBoundingClientRect().left");
+    let seam = seam.as_f64().unwrap_or_default() as usize;
+    for (asked, size, middle) in [("null", (960, 640), seam), ("[800, 600]", (800, 600), 400)] {
+        let blob = format!(
+            "import(new URL('www/save.js', location.href)).then(({{ pictureOf, shownFigures }}) => pictureOf(shownFigures(sinew.app), {asked}))"
+        );
+        let picture = Picture::from_png(&bytes_of(&mut page, &blob));
+        assert_eq!((picture.width, picture.height), size, "{asked}");
+        // Pins have many hues, clay and ground have one.
+        for (left, width) in [(0, middle), (middle, picture.width - middle)] {
+            let figure = picture.cut(left, 0, width, picture.height);
+            assert!(figure.hues(0.0002) >= 3, "{asked}, from {left}: {} hues", figure.hues(0.0002));
+        }
+    }
+}
+
+#[test]
+#[ignore = "drives the built page in Chromium: run by `cargo xtask test`"]
+fn letters_of_any_language_stay_in_the_names_of_files() {
+    let mut page = opened(Backend::WebGl2, Screen::Still, "#v1;zoo=snake;faces=3000");
+    let names = page.evaluate(
+        "import(new URL('www/save.js', location.href)).then(({ fileName }) =>
+        ['Füchse & Söhne.glb', '狐狸.obj', '-- walk (2) --.glb', '!.glb'].map((name) => fileName({ sequence: { name } })))",
+    );
+    assert_eq!(names, json!(["sinew-Füchse-Söhne", "sinew-狐狸", "sinew-walk-2", "sinew-picture"]));
 }
 
 #[test]

@@ -4,7 +4,7 @@ import { h, icon, show } from '../dom.js';
 import { bytes, number } from '../format.js';
 import { lesson } from '../lesson.js';
 import { writeProject } from '../project.js';
-import { fileName, pairsFile, partsFile, pointsFile, reportFile, saveBlob, saveParts, savePicture, saveRigid } from '../save.js';
+import { fileName, pairName, pairsFile, partsFile, pointsFile, reportFile, saveBlob, saveParts, savePicture, saveRigid, shownFigures } from '../save.js';
 import { recordLoop, videoType } from '../video.js';
 
 export const exportStep = {
@@ -35,8 +35,8 @@ function build(app) {
     const { motion, files } = app.transfer;
     show(moving, ...(motion ? [
       ...FORMS.filter(([form]) => form === 'exact' || motion.handles).map(([form, name, about]) => item(name, detail(about, files.get(form)), () => saveForm(app, form), `export-${form}`)),
-      item('Pairs', 'The key points of both as vertex numbers, JSON.', () => saveBlob(pairsFile(app), `${baseName(app)}-pairs.json`), 'export-pairs'),
-      item('Report', 'Parameters, errors and times, JSON.', () => saveBlob(reportFile(app), `${baseName(app)}-report.json`), 'export-report'),
+      item('Pairs', 'The key points of both as vertex numbers, JSON.', () => saveBlob(pairsFile(app), `${pairName(app)}-pairs.json`), 'export-pairs'),
+      item('Report', 'Parameters, errors and times, JSON.', () => saveBlob(reportFile(app), `${pairName(app)}-report.json`), 'export-report'),
     ] : [h('p', { class: 'small faint' }, app.doc.target ? 'The target does not move yet: its points have no place.' : 'With a target that moves, it can be taken away here.')]));
   };
   show(still,
@@ -44,10 +44,10 @@ function build(app) {
     item('Rigid skin', 'A joint for each part and every vertex on one of them, as engines like it. It says how far off that is.', () => saveRigid(app), 'export-rigid'),
     item('Parts as numbers', 'The part of each face, sizes and residuals, JSON.', () => app.result && saveBlob(partsFile(app), `${fileName(app)}-parts.json`), 'export-labels'),
     item('Key points', 'Vertices, errors and how they were chosen, JSON.', () => (app.doc.count ? saveBlob(pointsFile(app), `${fileName(app)}-points.json`) : app.say('There are no key points yet. The step Key points finds them.', 'news')), 'export-points'));
-  const size = select('Size', SIZES.map(([name, pixels]) => [name, pixels ? `${name}, ${pixels.join(' × ')}` : name]), SIZES[0][0], () => {});
+  const size = select('Picture size', SIZES.map(([name, pixels]) => [name, pixels ? `${name}, ${pixels.join(' × ')}` : name]), SIZES[0][0], () => {});
   const pictures = h('div', { class: 'stack' }, size,
     item('Picture', 'What is shown now, PNG.', () => savePicture(app, SIZES.find(([name]) => name === size.querySelector('select').value)[1]), 'export-picture'),
-    videoType() && item('Video', 'The motion from beginning to end, as it plays now.', () => saveVideo(app), 'export-video'),
+    videoType() && item('Video', 'The motion from beginning to end, as it plays now and as large as it is shown.', () => saveVideo(app), 'export-video'),
     item('Project', 'Everything as one file, to go on later or elsewhere.', () => saveProject(app), 'export-project'));
   app.on('motion', () => {
     update();
@@ -72,13 +72,13 @@ function item(name, about, click, id) {
 
 async function saveForm(app, form) {
   const file = await app.transfer.file(form);
-  if (file) saveBlob(file.blob, `${baseName(app)}-${form}.glb`);
+  if (file) saveBlob(file.blob, `${pairName(app)}-${form}.glb`);
 }
 
 async function saveVideo(app) {
   app.recording = new AbortController();
   const made = await app.work.run('video', 'recording the motion', (progress) =>
-    recordLoop(app.stage, app.timeline, (done) => progress({ stage: 'recording the motion', done }), app.recording.signal));
+    recordLoop(shownFigures(app), app.timeline, (done) => progress({ stage: 'recording the motion', done }), app.recording.signal));
   app.recording = null;
   if (made) saveBlob(made.blob, `${fileName(app)}.${made.extension}`);
 }
@@ -94,6 +94,3 @@ async function measure(app) {
   if (!motion || app.target.sequence.sizes.vertices * app.sequence.sizes.poses > SMALL) return;
   for (const [form] of FORMS) if (form === 'exact' || motion.handles) await app.transfer.file(form);
 }
-
-const clean = (name) => name.replace(/\.[^.]*$/, '').replace(/[^\w-]+/g, '-');
-const baseName = ({ sequence, target }) => `sinew-${clean(target.sequence?.name ?? 'target')}-like-${clean(sequence.name)}`;
