@@ -147,10 +147,10 @@ export class App extends EventTarget {
     this.#react(before);
   }
 
-  /** Changes it without a step back: for what the page finds out by itself. */
-  amend(patch) {
+  /** Changes it without a step back: for what the page finds out by itself. See {@link History.amend} */
+  amend(patch, holds) {
     const before = this.doc;
-    this.history.amend(patch);
+    this.history.amend(patch, holds);
     this.#react(before);
   }
 
@@ -180,6 +180,7 @@ export class App extends EventTarget {
   #react(before) {
     const { doc } = this;
     this.selected = Math.min(this.selected, doc.count - 1);
+    if (before.target !== doc.target) this.transfer.forget();
     this.target.react(before, doc);
     // The motion first: it is looked at, what the points weigh is read.
     this.transfer.react(before, doc);

@@ -9,6 +9,16 @@ import { METHODS } from './steps/methods.js';
 
 const MAP = 'viridis';
 
+/** Whether two methods are seen side by side. */
+export const compares = (app) => Boolean(app.transfer.other && app.step === 'transfer' && app.second);
+
+/** What the colours mean meanwhile, whichever view was chosen: see steps/views.js. */
+export function comparison(app) {
+  const { sequence } = app.target;
+  const high = (100 * most(app.transfer.other, sequence.reference.length)) / sequence.diagonal;
+  return { kind: 'scalar', map: MAP, marks: [0, high / 2, high], unit: 'distance between the two methods, % of the size' };
+}
+
 /**
  * @param {import('./app.js').App} app
  * @param {HTMLElement} first the host of the source's picture
@@ -21,10 +31,9 @@ export function beside(app, first, make) {
   first.append(host);
   let unlink = null;
   let painted = null;
-  const active = () => Boolean(app.transfer.other && app.step === 'transfer' && app.second);
 
   const arrange = () => {
-    const on = active();
+    const on = compares(app);
     host.hidden = !on;
     painted = null;
     if (!on) {
@@ -54,7 +63,7 @@ export function beside(app, first, make) {
 
   /** Paints both by their distance in the pose that is nearest to the moment. */
   const paint = () => {
-    if (!active() || !app.third) return;
+    if (!compares(app) || !app.third) return;
     const { other } = app.transfer;
     const { sequence } = app.target;
     const length = sequence.reference.length;

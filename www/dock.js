@@ -2,6 +2,7 @@
  * What lies under the picture: the views of the step, and what belongs to the view that is shown — the slider for
  * the number of parts, a legend in numbers. Between them one goes through the positions of a stage: strip.js.
  */
+import { compares, comparison } from './beside.js';
 import { choice, slider } from './controls.js';
 import { h, iconButton, show } from './dom.js';
 import { number, plural } from './format.js';
@@ -55,7 +56,7 @@ export function dock(host, app) {
     if (shown !== app.step || views.querySelector(':checked')?.value !== app.view) showViews();
     shown = app.step;
     if (hidden) reveal();
-    const said = step.views.find(({ id }) => id === app.view).legend(app);
+    const said = compares(app) ? comparison(app) : step.views.find(({ id }) => id === app.view).legend(app);
     if (said.kind === 'parts') {
       partsControl.update();
       if (legend.firstChild !== partsControl.element) show(legend, partsControl.element);
@@ -67,7 +68,7 @@ export function dock(host, app) {
     else if (said.kind === 'sets') show(legend, setLegend(said));
     else show(legend, h('p', { class: 'small' }, said.text));
   };
-  app.on('view place step result doc points selected motion target', update);
+  app.on('view place step result doc points selected motion target rival', update);
   app.on('view step', reveal);
   update();
   reveal();

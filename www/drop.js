@@ -3,6 +3,7 @@ import { dropped } from './files.js';
 
 /** @param {HTMLElement} veil shown while something is dragged over the page */
 export function drops(veil, app) {
+  const words = veil.firstElementChild;
   let depth = 0;
   const hasFiles = (event) => event.dataTransfer?.types.includes('Files');
   const show = (change) => {
@@ -11,7 +12,11 @@ export function drops(veil, app) {
   };
   window.addEventListener('dragenter', (event) => hasFiles(event) && show(1));
   window.addEventListener('dragleave', (event) => hasFiles(event) && show(-1));
-  window.addEventListener('dragover', (event) => hasFiles(event) && event.preventDefault());
+  window.addEventListener('dragover', (event) => {
+    if (!hasFiles(event)) return;
+    event.preventDefault();
+    words.textContent = saying(app, event);
+  });
   window.addEventListener('drop', async (event) => {
     if (!hasFiles(event)) return;
     event.preventDefault();
@@ -24,6 +29,15 @@ export function drops(veil, app) {
       app.say('What was dropped could not be read.');
     }
   });
+}
+
+/** What dropping here does. */
+function saying(app, event) {
+  const what = 'a file, several files or a folder';
+  if (onTarget(app, event)) return `Drop the figure that is to move: ${what}`;
+  const points = app.doc.points.some(({ state }) => state === 'placed');
+  const lost = points ? ' The points that were placed go with the one that is open.' : '';
+  return app.target.sequence ? `Drop another figure to move like: ${what}.${lost}` : `Drop it: ${what}`;
 }
 
 /** Whether what is dropped is to be the target: in its step, and on its picture. */

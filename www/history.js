@@ -28,9 +28,14 @@ export class History {
     this.now = Object.freeze({ ...this.now, ...patch });
   }
 
-  /** Corrects the state that is in force, without a step back. @param {Partial<State>} patch */
-  amend(patch) {
+  /**
+   * Corrects the state that is in force, without a step back, and former ones that it is true of as well.
+   * @param {Partial<State>} patch
+   * @param {(state: State) => boolean} holds whether it is true of a former state
+   */
+  amend(patch, holds = () => false) {
     this.now = Object.freeze({ ...this.now, ...patch });
+    this.past = this.past.map((state) => (holds(state) ? Object.freeze({ ...state, ...patch }) : state));
   }
 
   /** Ends a row of steps that are one step back. */

@@ -58,7 +58,10 @@ export function writeLink(app, timeline, { own = false } = {}) {
   if (!app.panel) fields.panel = 'away';
   if (timeline.reference) fields.t = 'reference';
   else if (!timeline.playing && timeline.poses > 1) fields.t = timeline.time.toFixed(2);
-  const camera = app.stage.kept.camera;
+  if (app.step === 'transfer' && app.transfer.rival) fields.beside = app.transfer.rival;
+  // A picture that was turned and then framed is still turned.
+  const { camera: moved, turn } = app.stage.kept;
+  const camera = moved ?? (turn && app.stage.camera);
   if (camera) fields.look = [...camera].map((value) => Number(value.toPrecision(4))).join();
   const text = Object.entries(fields).map(([name, value]) => `;${name}=${encodeURIComponent(value).replaceAll('%2C', ',')}`).join('');
   return `#${VERSION}${text}`;
@@ -73,6 +76,7 @@ export function applyLink(fields, app) {
     if (name.startsWith('k.') && isValidSearch(name.slice(2), parsed)) search[name.slice(2)] = parsed;
   }
   app.reset({ changes, search, method: METHODS.some(([id]) => id === fields.method) ? fields.method : '' });
+  app.transfer.setRival(METHODS.some(([id]) => id === fields.beside) ? fields.beside : '');
   app.lessons = fields.lesson === 'open';
   app.step = STEPS.some(({ id }) => id === fields.step) ? fields.step : 'parts';
   app.views = {};

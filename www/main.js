@@ -53,6 +53,8 @@ stage.addEventListener('no-gpu', () => {
   if (stage.canvas) stage.canvas.hidden = true;
 });
 stage.addEventListener('trouble', ({ error }) => app.say(error.message));
+// What is done in one movement of the hand is one step back; what the next one does is another.
+for (const end of ['pointerup', 'change']) window.addEventListener(end, () => app.history.rest());
 stage.started.catch((error) => {
   ready.pictured = true;
   element('no-gpu').hidden = false;

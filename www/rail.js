@@ -25,6 +25,6 @@ export function rail(host, app) {
 
 /** A step that is chosen shows its panel. */
 function go(app, step) {
-  app.setStep(step);
+  if (step !== app.step) app.setStep(step);
   if (!app.panel) app.setPanel(true);
 }

@@ -30,6 +30,7 @@ export class Transfer {
     this.rival = method;
     this.#setOther(null);
     this.compare();
+    this.app.changed('link');
   }
 
   /** The points that have a place on both sides. */
@@ -37,12 +38,12 @@ export class Transfer {
     return this.app.keypoints.used.filter(({ target }) => target != null).map(({ source, target }) => ({ source, target }));
   }
 
+  /** The motion was that of another figure. */
   forget() {
     this.#set(null);
   }
 
   react(before, after) {
-    if (before.target !== after.target) this.#set(null);
     const same = before.target === after.target && before.method === after.method && before.count === after.count && before.points === after.points;
     if (!same && after.target) this.move();
   }

@@ -44,7 +44,7 @@ function build(app) {
         h('div', { class: 'row' }, h('p', { class: 'name' }, nameOf(app.target)),
           h('button', { type: 'button', class: 'text-button', on: { click: () => app.target.close() } }, 'Put away')),
         facts([['Vertices', count(sequence.sizes.vertices)], ['Faces', count(sequence.sizes.faces)]]),
-        ...warnings(app, untold(sequence.warnings), app.second));
+        ...warnings(app, untold(sequence.warnings).filter(({ code }) => code !== 'no-animation'), app.second));
     }
     const { placed, proposed, missing } = app.target.tally;
     tally.textContent = [placed && `${placed} placed`, proposed && `${proposed} proposed`, missing && `${missing} missing`].filter(Boolean).join(' · ');
