@@ -218,7 +218,18 @@ fn sorted_out<'a>(files: impl Iterator<Item = &'a File>) -> SortedOut<'a> {
 fn open_listed(order: &[&File], files: &[File], options: &Options) -> Result<Imported, ImportError> {
     let found = sorted_out(order.iter().copied());
     match (found.documents.as_slice(), found.meshes.as_slice()) {
-        ([document], _) => gltf::open(document, files, options),
+        ([document], meshes) => {
+            let mut imported = gltf::open(document, files, options)?;
+            if let [first, ..] = meshes {
+                let which = match meshes.len() {
+                    1 => first.0.name.clone(),
+                    more => format!("{} and {} more", first.0.name, more - 1),
+                };
+                let message = format!("{} was opened, and what lay beside it left out: {which}.", document.name);
+                imported.warnings.push(Warning::new("meshes-left-out", message));
+            }
+            Ok(imported)
+        }
         ([first, second, ..], _) => Err(ImportError(format!(
             "several glTF files were given ({}, {}, …); give one at a time",
             first.name, second.name

@@ -160,6 +160,11 @@ impl Segmenter {
         let residual_before_smoothing = self.residual(&labels, count);
         let band = self.smooth(&mut labels, count, residual_before_smoothing);
         count = clustering::compact(&mut labels);
+        let mut warnings = self.warnings.clone();
+        if let Some(wanted) = parts.filter(|&wanted| wanted > count && self.parameters.method == Method::Tree) {
+            let message = format!("{wanted} parts were asked for; this mesh is cut into {count} at the most.");
+            warnings.push(Warning::new("fewer-parts", message));
+        }
         seconds.push(("smoothing", clock::seconds() - refined));
         let steps = Steps { unsmoothed, band, ..self.steps.clone() };
         Segmentation {
@@ -168,7 +173,7 @@ impl Segmenter {
             residual_before_smoothing,
             labels,
             steps,
-            warnings: self.warnings.clone(),
+            warnings,
             seconds,
         }
     }

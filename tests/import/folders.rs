@@ -140,3 +140,17 @@ fn soups_are_welded_in_all_their_poses() {
     assert_eq!((opened.sequence.faces().len(), opened.sequence.polygons()), (1, Some(&[1][..])));
     assert!(opened.warnings.iter().any(|w| w.code == "collapsed-faces"));
 }
+
+#[test]
+fn meshes_beside_a_document_are_said_to_be_left_out() {
+    let files = [
+        file("a/walk_1.obj", QUAD.as_bytes()),
+        file("made.glb", triangle().glb()),
+        file("walk_2.obj", QUAD.as_bytes()),
+    ];
+    let imported = open(&files, &Options::default()).unwrap();
+    let note = imported.warnings.iter().find(|warning| warning.code == "meshes-left-out").expect("a note");
+    assert!(note.message.contains("walk_1.obj and 1 more"), "{}", note.message);
+    let alone = open(&files[1..2], &Options::default()).unwrap();
+    assert!(alone.warnings.iter().all(|warning| warning.code != "meshes-left-out"));
+}

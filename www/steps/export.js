@@ -35,6 +35,7 @@ function build(app) {
     const { motion, files } = app.transfer;
     show(moving, ...(motion ? [
       ...FORMS.filter(([form]) => form === 'exact' || motion.handles).map(([form, name, about]) => item(name, detail(about, files.get(form)), () => saveForm(app, form), `export-${form}`)),
+      h('p', { class: 'small faint' }, 'Shape and motion alone: textures, and where they lie on a mesh, stay in the file that was opened.'),
       item('Pairs', 'The key points of both as vertex numbers, JSON.', () => saveBlob(pairsFile(app), `${pairName(app)}-pairs.json`), 'export-pairs'),
       item('Report', 'Parameters, errors and times, JSON.', () => saveBlob(reportFile(app), `${pairName(app)}-report.json`), 'export-report'),
     ] : [h('p', { class: 'small faint' }, app.doc.target ? 'The target does not move yet: its points have no place.' : 'With a target that moves, it can be taken away here.')]));
