@@ -9,13 +9,14 @@ mod hinge;
 mod npz;
 
 use agreement::agreement;
-use glam::{DMat3, DVec3};
+use glam::{DAffine3, DMat3, DVec3};
 use proptest::prelude::*;
 use sinew::mesh::DualGraph;
 use sinew::observer::Silent;
 use sinew::segmentation::{Method, Parameters, Segmentation, SegmentationError, Segmenter, Smoothing, segment};
 use sinew::sequence::{Pose, Sequence};
 use sinew::zoo::{self, Creature, Recipe};
+use std::f64::consts::TAU;
 
 fn creature(name: &str, faces: usize, exact: bool) -> Creature {
     zoo::make(&Recipe { name: name.into(), faces, poses: 12, exact, ..Recipe::default() })
@@ -153,6 +154,45 @@ fn clothes_belong_to_what_they_cover() {
     let agreement = agreement(&dressed, &result.labels, &twice);
     println!("{} parts for {} bones in two layers, agreement {agreement:.3}", result.parts.len(), person.parts.len());
     assert!(result.parts.len() <= person.parts.len() + 2 && agreement >= 0.9);
+}
+
+/// An arm of five rigid links that is nothing but small plates around it.
+#[test]
+fn plates_belong_to_the_limb_they_sit_on() {
+    for plates in [60, 150, 400] {
+        let link_of = |plate: usize| 5 * plate / plates;
+        let place = |plate: usize, corner: usize| {
+            // Numbers that look random: the fractional parts of multiples of square roots.
+            let along = 2.0 * link_of(plate) as f64 + 2.0 * (plate as f64 * 2.0_f64.sqrt()).fract();
+            let turn = DMat3::from_rotation_x(TAU * (plate as f64 * 3.0_f64.sqrt()).fract());
+            let corner = DVec3::new((corner & 1) as f64, (corner >> 1 & 1) as f64, (corner >> 2) as f64) - 0.5;
+            DVec3::new(along, 0.0, 0.0) + turn * (DVec3::new(0.0, 0.5, 0.0) + corner * DVec3::new(0.3, 0.1, 0.3))
+        };
+        let sides = [[0, 1, 3, 2], [4, 6, 7, 5], [0, 4, 5, 1], [2, 3, 7, 6], [0, 2, 6, 4], [1, 5, 7, 3]];
+        let faces = (0..plates as u32).flat_map(|plate| {
+            let corner = move |k: u32| 8 * plate + k;
+            sides.iter().flat_map(move |&[a, b, c, d]| [[a, b, c], [a, c, d]].map(|face| face.map(corner)))
+        });
+        let reference: Vec<DVec3> = (0..8 * plates).map(|v| place(v / 8, v % 8)).collect();
+        let pose = |k: usize| {
+            let bend = |link: usize| {
+                let turn = 0.2 * k as f64 * if link < 3 { 1.0 } else { -1.0 };
+                let turn =
+                    if link % 2 == 1 { DAffine3::from_rotation_z(turn) } else { DAffine3::from_rotation_y(turn) };
+                let joint = DVec3::new(2.0 * link as f64, 0.0, 0.0);
+                DAffine3::from_translation(joint) * turn * DAffine3::from_translation(-joint)
+            };
+            let motion = |link: usize| (1..=link).fold(DAffine3::IDENTITY, |all, link| all * bend(link));
+            let positions = reference.iter().enumerate().map(|(v, &p)| motion(link_of(v / 8)).transform_point3(p));
+            Pose { name: format!("{k}"), time: k as f64, positions: positions.collect() }
+        };
+        let arm =
+            Sequence::new("arm", faces.collect(), reference.clone(), (1..=5).map(pose).collect()).expect("an arm");
+        let result = by_default(&arm);
+        println!("{plates} plates: {} parts, residual {:.1e}", result.parts.len(), result.rigid_residual);
+        assert_eq!(result.parts.len(), 5, "{plates} plates");
+        assert!(result.rigid_residual < 1e-6);
+    }
 }
 
 #[test]

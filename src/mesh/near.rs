@@ -7,7 +7,11 @@ use glam::DVec3;
 /// Faces of one piece that are asked for their nearest face on another piece; more are thinned out evenly.
 const ASKED: usize = 400;
 
-/// Faces of one cell that are asked for a face of another piece against which they lie.
+/// Pieces that are looked for around each, and how far away, in its own sizes.
+const BESIDE: usize = 12;
+const AROUND: f64 = 2.0;
+
+/// Faces of one cell, or of one piece, that are asked for a face of another piece against which they lie.
 const FELT: usize = 30;
 
 /// Pairs of faces that join all connected pieces into one: each piece to the piece nearest to it (by face centroids),
@@ -50,6 +54,37 @@ pub fn bridges(graph: &DualGraph, centroids: &[DVec3]) -> Vec<[u32; 2]> {
         }
     }
     bridges
+}
+
+/// Pairs of faces of each piece and the [`BESIDE`] nearest ones that are not far from it, for its size: the plates of an
+/// armour that sit on one limb. Empty for a mesh in one piece.
+pub fn beside(graph: &DualGraph, centroids: &[DVec3]) -> Vec<[u32; 2]> {
+    let (piece, count) = graph.pieces();
+    if count < 2 {
+        return Vec::new();
+    }
+    let mut faces_of = vec![Vec::new(); count];
+    for (f, &p) in piece.iter().enumerate() {
+        faces_of[p as usize].push(f as u32);
+    }
+    let tree = KdTree::new(centroids);
+    let mut pairs = Vec::new();
+    for (own, faces) in (0_u32..).zip(&faces_of) {
+        let at = || faces.iter().map(|&f| centroids[f as usize]);
+        let low = at().fold(DVec3::INFINITY, DVec3::min);
+        let reach = AROUND * at().fold(DVec3::NEG_INFINITY, DVec3::max).distance(low);
+        let mut known = vec![own];
+        for _ in 0..BESIDE {
+            let other = |face: u32| !known.contains(&piece[face as usize]);
+            let nearest = faces.iter().step_by(faces.len().div_ceil(FELT)).fold((reach * reach, None), |best, &f| {
+                tree.nearest(centroids[f as usize], best.0, &other).map_or(best, |(d, face)| (d, Some([f, face])))
+            });
+            let Some(pair) = nearest.1 else { break };
+            known.push(piece[pair[1] as usize]);
+            pairs.push(pair);
+        }
+    }
+    pairs
 }
 
 /// Pairs of faces of different pieces where the cells of a mesh lie against each other, as a sleeve lies on an arm: from

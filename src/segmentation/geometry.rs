@@ -41,6 +41,11 @@ impl Geometry {
         near::bridges(&self.graph, &self.centroids)
     }
 
+    /// Pairs of faces of each piece of the mesh and those around it.
+    pub fn beside(&self) -> Vec<[u32; 2]> {
+        near::beside(&self.graph, &self.centroids)
+    }
+
     /// Pairs of faces where cells of different pieces (#F cell numbers) lie against each other, within `reach`.
     pub fn contacts(&self, cell: &[u32], reach: f64) -> Vec<[u32; 2]> {
         near::contacts(&self.graph, &self.centroids, cell, reach)

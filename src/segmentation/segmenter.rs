@@ -310,8 +310,8 @@ fn grow_tree(
     let (count, residual) = (moments.len(), moments.iter().map(motion::residual).sum());
     let mut pairs = graph.touching(&labels);
     // Pieces that share no edge may join the nearest (eyes in a head, the links of a robot) and what they lie against
-    // (a sleeve on an arm).
-    let near = geometry.bridges().into_iter().chain(geometry.contacts(&labels, CONTACT));
+    // (a sleeve on an arm), and small ones those around them (the plates of an armour).
+    let near = geometry.bridges().into_iter().chain(geometry.beside()).chain(geometry.contacts(&labels, CONTACT));
     pairs.extend(near.map(|pair| pair.map(|f| labels[f as usize])).map(|[a, b]| (a, b)));
     let merges = merge_tree::build(moments, &pairs);
     (Finest { labels, count, residual }, merges)
