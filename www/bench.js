@@ -33,19 +33,22 @@ const median = (list) => [...list].sort((a, b) => a - b)[list.length >> 1];
  */
 async function sought(app) {
   await app.openCreature(SOUGHT);
-  app.held = true;
   const { vertices, poses } = app.sequence.sizes;
   const parameters = { ...app.about.keypoints, points: POINTS };
   const crews = [...new Set([1, most()])];
   const taken = crews.map(() => []);
-  for (let run = 0; run < RUNS; run++) {
-    for (const [i, crew] of crews.entries()) {
-      const start = performance.now();
-      await app.engine.call('keypoints', { parameters, crew });
-      taken[i].push(performance.now() - start);
+  app.held = true;
+  try {
+    for (let run = 0; run < RUNS; run++) {
+      for (const [i, crew] of crews.entries()) {
+        const start = performance.now();
+        await app.engine.call('keypoints', { parameters, crew });
+        taken[i].push(performance.now() - start);
+      }
     }
+  } finally {
+    app.held = false;
   }
-  app.held = false;
   const what = `${POINTS} key points, ${vertices} vertices × ${poses} poses`;
   const rows = crews.map((crew, i) => ({ name: `${what}, ${crew === 1 ? 'alone' : `by ${crew} workers`}`, milliseconds: median(taken[i]) }));
   return [{ name: `${what}, the first time, alone`, milliseconds: taken[0][0] }, ...rows];

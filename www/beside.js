@@ -105,10 +105,12 @@ const scales = new WeakMap();
 /** The distance that nineteen of twenty vertices, over all poses, keep below. */
 function most(other, length) {
   if (!scales.has(other)) {
-    const all = [];
+    const poses = [];
     const step = Math.max(1, Math.floor(other.own.length / length / 12)) * length;
-    for (let from = 0; from < other.own.length; from += step) all.push(...distances(other.own, other.positions, from, length));
-    all.sort((a, b) => a - b);
+    for (let from = 0; from < other.own.length; from += step) poses.push(distances(other.own, other.positions, from, length));
+    const all = new Float32Array(poses.length * (length / 3));
+    poses.forEach((distances, i) => all.set(distances, (i * length) / 3));
+    all.sort();
     scales.set(other, Math.max(all[Math.floor(0.95 * all.length)] ?? 0, 1e-9));
   }
   return scales.get(other);

@@ -29,13 +29,14 @@ export class History {
   }
 
   /**
-   * Corrects the state that is in force, without a step back, and former ones that it is true of as well.
+   * Corrects the state that is in force, without a step back, and the others that it is true of as well.
    * @param {Partial<State>} patch
-   * @param {(state: State) => boolean} holds whether it is true of a former state
+   * @param {(state: State) => boolean} holds whether it is true of a state before or after
    */
   amend(patch, holds = () => false) {
-    this.now = Object.freeze({ ...this.now, ...patch });
-    this.past = this.past.map((state) => (holds(state) ? Object.freeze({ ...state, ...patch }) : state));
+    const amended = (state) => Object.freeze({ ...state, ...patch });
+    const where = (state) => (holds(state) ? amended(state) : state);
+    Object.assign(this, { now: amended(this.now), past: this.past.map(where), future: this.future.map(where) });
   }
 
   /** Ends a row of steps that are one step back. */

@@ -90,7 +90,7 @@ export class KeyPoints {
     delete app.places.candidates;
     const known = new Map(app.doc.points.map((point) => [point.source, point]));
     const points = Array.from(run.key_points, (vertex) => known.get(vertex) ?? fresh(vertex));
-    // They are there at former steps back as well, unless those had others: what was changed since is not about them.
+    // They are there a step back or on as well, unless others are: what was changed meanwhile is not about them.
     const { doc } = app;
     app.amend({ run, points, count: points.length }, (state) => state.search === search && state.run === doc.run && state.points === doc.points);
   }

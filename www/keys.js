@@ -86,8 +86,8 @@ function mine({ target, key }) {
   if (!(target instanceof Element)) return false;
   if (target.closest('select')) return key !== 'Escape';
   if (target.closest('input[type=range], input[type=radio]')) return key.startsWith('Arrow') || (key === ' ' && chooses(target));
-  // The step that is shown: pressing it again would do nothing.
-  if (target.closest('[aria-current=step]')) return key === 'Enter';
+  // Pressing the step that is shown opens its panel, and does nothing where that is open.
+  if (target.closest('[aria-current=step]') && document.documentElement.dataset.panel !== 'away') return key === 'Enter';
   if (target.closest('button, summary, a, input, label')) return key === ' ' || key === 'Enter';
   return false;
 }

@@ -54,7 +54,9 @@ stage.addEventListener('no-gpu', () => {
 });
 stage.addEventListener('trouble', ({ error }) => app.say(error.message));
 // What is done in one movement of the hand is one step back; what the next one does is another.
-for (const end of ['pointerup', 'change']) window.addEventListener(end, () => app.history.rest());
+window.addEventListener('change', () => app.history.rest());
+// A slider that is let go says so once more after this.
+window.addEventListener('pointerup', () => setTimeout(() => app.history.rest()));
 stage.started.catch((error) => {
   ready.pictured = true;
   element('no-gpu').hidden = false;

@@ -417,7 +417,7 @@ export class Stage extends EventTarget {
     if (method === 'frame') this.#frameAll();
     else this.view[method](...values);
     const camera = this.view.camera();
-    Object.assign(this.kept, { camera: method === 'frame' ? null : camera, turn: turnOf(camera) });
+    Object.assign(this.kept, method === 'frame' ? { camera: null } : { camera, turn: turnOf(camera) });
     this.#tellCamera(method, values);
   }
 

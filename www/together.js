@@ -8,7 +8,13 @@ export function boxesOf(figures, ratio) {
   const boxes = figures.map(({ host }) => host.getBoundingClientRect());
   const left = Math.min(...boxes.map((box) => box.left));
   const top = Math.min(...boxes.map((box) => box.top));
-  return boxes.map((box) => [box.left - left, box.top - top, box.width, box.height].map((length) => Math.round(ratio * length)));
+  // Edges are rounded, not lengths: what meets on the screen meets here.
+  const span = (from, to, start) => [Math.round(ratio * (from - start)), Math.round(ratio * (to - start))];
+  return boxes.map((box) => {
+    const [x, right] = span(box.left, box.right, left);
+    const [y, bottom] = span(box.top, box.bottom, top);
+    return [x, y, right - x, bottom - y];
+  });
 }
 
 /** Boxes of two figures side by side in a picture of a size of its own. */

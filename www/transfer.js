@@ -77,9 +77,9 @@ export class Transfer {
   #set(motion) {
     this.motion = motion;
     this.files.clear();
+    this.#setOther(null);
     this.app.changed('motion');
     if (this.app.view === 'fit') this.app.paint();
-    this.#setOther(null);
     this.compare();
   }
 

@@ -29,6 +29,18 @@ export async function recordLoop(figures, timeline, progress, signal) {
   if (!(timeline.seconds.at(-1) > 0)) throw new Error('It stands still: there is no motion to record.');
   const { time: before, playing, reference } = timeline;
   const film = filmOf(figures);
+  const pieces = await filmed(film, type, timeline, progress, signal).finally(film.end);
+  // The visitor goes on where they were.
+  timeline.seek(before);
+  if (reference) timeline.toggleReference();
+  timeline.setPlaying(playing);
+  if (signal?.aborted) throw new Cancelled('Cancelled.');
+  if (!pieces.length) throw new Error('The recording came out empty.');
+  return { blob: new Blob(pieces, { type }), extension: type.includes('mp4') ? 'mp4' : 'webm' };
+}
+
+/** Plays the motion once, and returns the pieces of what was recorded meanwhile. */
+async function filmed(film, type, timeline, progress, signal) {
   const recorder = new MediaRecorder(film.stream, { mimeType: type, videoBitsPerSecond: BITS });
   const pieces = [];
   recorder.addEventListener('dataavailable', ({ data }) => data.size && pieces.push(data));
@@ -53,14 +65,8 @@ export async function recordLoop(figures, timeline, progress, signal) {
   });
   clearInterval(watch);
   recorder.stop();
-  await stopped.finally(() => film.end());
-  // The visitor goes on where they were.
-  timeline.seek(before);
-  if (reference) timeline.toggleReference();
-  timeline.setPlaying(playing);
-  if (signal?.aborted) throw new Cancelled('Cancelled.');
-  if (!pieces.length) throw new Error('The recording came out empty.');
-  return { blob: new Blob(pieces, { type }), extension: type.includes('mp4') ? 'mp4' : 'webm' };
+  await stopped;
+  return pieces;
 }
 
 /** Puts figures together whenever one is drawn, until it ends. */

@@ -14,9 +14,9 @@ pub fn from_zero(times: impl Iterator<Item = f64> + Clone) -> Vec<f32> {
 }
 
 /// A last pose that is no farther from the first than this, in shares of the longest step, is the first again.
-const AGAIN: f64 = 0.1;
+const AGAIN: f64 = 1e-2;
 
-/// Whether the step from the last of the poses to the first is one like the others (and not none), so that the
+/// Whether the step from the last of the poses to the first is no longer than the others (and not none), so that the
 /// motion is a loop. `step(a, b)` is how far apart poses `a` and `b` are.
 pub fn closes(poses: usize, step: impl Fn(usize, usize) -> f64) -> bool {
     if poses < 3 {

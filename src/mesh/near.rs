@@ -7,7 +7,7 @@ use glam::DVec3;
 /// Faces of one piece that are asked for their nearest face on another piece; more are thinned out evenly.
 const ASKED: usize = 400;
 
-/// Pieces that are looked for around each, and how far away, in its own sizes.
+/// Pieces that are looked for around each, and how far away, in roots of its area.
 const BESIDE: usize = 12;
 const AROUND: f64 = 2.0;
 
@@ -56,9 +56,9 @@ pub fn bridges(graph: &DualGraph, centroids: &[DVec3]) -> Vec<[u32; 2]> {
     bridges
 }
 
-/// Pairs of faces of each piece and the [`BESIDE`] nearest ones that are not far from it, for its size: the plates of an
-/// armour that sit on one limb. Empty for a mesh in one piece.
-pub fn beside(graph: &DualGraph, centroids: &[DVec3]) -> Vec<[u32; 2]> {
+/// Pairs of faces of each piece and a dozen of the nearest ones that are not far from it, for its size: the plates of an
+/// armour that sit on one limb. `areas` are those of the faces. Empty for a mesh in one piece.
+pub fn beside(graph: &DualGraph, centroids: &[DVec3], areas: &[f64]) -> Vec<[u32; 2]> {
     let (piece, count) = graph.pieces();
     if count < 2 {
         return Vec::new();
@@ -70,9 +70,7 @@ pub fn beside(graph: &DualGraph, centroids: &[DVec3]) -> Vec<[u32; 2]> {
     let tree = KdTree::new(centroids);
     let mut pairs = Vec::new();
     for (own, faces) in (0_u32..).zip(&faces_of) {
-        let at = || faces.iter().map(|&f| centroids[f as usize]);
-        let low = at().fold(DVec3::INFINITY, DVec3::min);
-        let reach = AROUND * at().fold(DVec3::NEG_INFINITY, DVec3::max).distance(low);
+        let reach = AROUND * faces.iter().map(|&f| areas[f as usize]).sum::<f64>().sqrt();
         let mut known = vec![own];
         for _ in 0..BESIDE {
             let other = |face: u32| !known.contains(&piece[face as usize]);

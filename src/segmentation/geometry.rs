@@ -43,7 +43,7 @@ impl Geometry {
 
     /// Pairs of faces of each piece of the mesh and those around it.
     pub fn beside(&self) -> Vec<[u32; 2]> {
-        near::beside(&self.graph, &self.centroids)
+        near::beside(&self.graph, &self.centroids, &self.areas)
     }
 
     /// Pairs of faces where cells of different pieces (#F cell numbers) lie against each other, within `reach`.

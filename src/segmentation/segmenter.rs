@@ -147,11 +147,16 @@ impl Segmenter {
         let started = clock::seconds();
         let mut labels = self.finest.labels.clone();
         let mut count = self.finest.count;
+        let mut warnings = self.warnings.clone();
         if self.parameters.method == Method::Tree {
             let wanted = parts.unwrap_or_else(|| self.best_number_of_parts());
             let (part_of, n) = merge_tree::cut(self.finest.count, &self.steps.merges, wanted);
             labels.iter_mut().for_each(|l| *l = part_of[*l as usize]);
             count = n;
+            if n < wanted {
+                let message = format!("{wanted} parts were asked for; this mesh is cut into {n} at the most.");
+                warnings.push(Warning::new("fewer-parts", message));
+            }
             refinement::refine(&self.geometry.graph, &self.weights, &self.faces, &mut labels, count, REFINEMENTS);
         }
         let refined = clock::seconds();
@@ -160,11 +165,6 @@ impl Segmenter {
         let residual_before_smoothing = self.residual(&labels, count);
         let band = self.smooth(&mut labels, count, residual_before_smoothing);
         count = clustering::compact(&mut labels);
-        let mut warnings = self.warnings.clone();
-        if let Some(wanted) = parts.filter(|&wanted| wanted > count && self.parameters.method == Method::Tree) {
-            let message = format!("{wanted} parts were asked for; this mesh is cut into {count} at the most.");
-            warnings.push(Warning::new("fewer-parts", message));
-        }
         seconds.push(("smoothing", clock::seconds() - refined));
         let steps = Steps { unsmoothed, band, ..self.steps.clone() };
         Segmentation {

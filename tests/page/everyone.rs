@@ -251,3 +251,21 @@ fn all_that_can_be_pressed_is_reached_with_tab() {
     page.press("Escape");
     page.wait_until("!document.querySelector('#keys').open", 2.0);
 }
+
+#[test]
+#[ignore = "drives the built page in Chromium: run by `cargo xtask test`"]
+fn what_the_page_finds_stays_whichever_way_one_goes() {
+    let mut page = opened(Backend::WebGl2, Screen::Still, SMALL);
+    // The parts are taken back while the search for key points is on its way.
+    page.evaluate(
+        "sinew.app.setStep('keypoints'); sinew.app.setParts(3); sinew.app.setParts(4);
+        window.dispatchEvent(new Event('change')); sinew.app.setParts(5); sinew.app.undo()",
+    );
+    page.wait_until(&format!("sinew.state().points > 0 && sinew.state().parts === 4 && {IDLE}"), 60.0);
+    let found = page.state()["points"].clone();
+    for (way, parts) in [("redo", 5), ("undo", 4)] {
+        page.evaluate(&format!("sinew.app.{way}()"));
+        page.wait_until(&format!("sinew.state().parts === {parts} && {IDLE}"), 20.0);
+        assert_eq!(page.state()["points"], found, "{way}");
+    }
+}

@@ -22,7 +22,7 @@ pub struct Propose {
     /// Vertex numbers of the source, separated by white space or as a JSON list, or a report of key points
     #[arg(long, value_name = "FILE")]
     points: PathBuf,
-    /// The pairs that are known: [{"source": 12, "target": 34}, …], or lines of two numbers (.cons)
+    /// The pairs that are known: [{"source": 12, "target": 34}, …], or lines of two numbers (.cons), or a report of proposals
     #[arg(long, value_name = "FILE")]
     pairs: Option<PathBuf>,
     /// Write the proposals as JSON

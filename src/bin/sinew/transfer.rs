@@ -56,11 +56,12 @@ pub struct Transfer {
     /// Write parameters, seconds, errors and warnings as JSON
     #[arg(long, value_name = "FILE.json")]
     report: Option<PathBuf>,
-    /// The target's true poses, to measure the result against: files, or a folder of files in natural order
+    /// The target's true poses, to measure the result against: files, or a folder of files in natural order (glTF and STL:
+    /// with --no-weld, for points that meet in one pose only would be joined)
     #[arg(long, value_name = "FILE", num_args = 1..)]
     truth: Vec<PathBuf>,
     /// Transfer by every method and write how far each is from the truth
-    #[arg(long, value_name = "FILE.json", requires = "truth", conflicts_with_all = ["out", "out_poses", "report"])]
+    #[arg(long, value_name = "FILE.json", requires = "truth", conflicts_with_all = ["out", "out_poses", "report", "method", "variant"])]
     compare: Option<PathBuf>,
     /// By gradients or posed: vertices of the target that go exactly as far as the source does there, as feet that stand
     #[arg(long, value_name = "VERTEX", value_delimiter = ',')]

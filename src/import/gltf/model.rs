@@ -167,20 +167,10 @@ impl Model {
         out
     }
 
-    /// Whether an instance is shown as a mirror image: by its node, or by most of the joints that it follows.
-    fn is_mirrored(&self, instance: &Instance, worlds: &[DAffine3]) -> bool {
-        match (instance.skin, &self.shapes[instance.shape].influences) {
-            (Some(skin), Some(_)) => {
-                let matrices = self.skins[skin].matrices(worlds);
-                2 * matrices.iter().filter(|m| m.matrix3.determinant() < 0.0).count() > matrices.len()
-            }
-            _ => (worlds[instance.node] * instance.place).matrix3.determinant() < 0.0,
-        }
-    }
-
     /// Numbers the vertices of all instances in one list.
     fn join(&mut self) -> Result<(), ImportError> {
         let worlds = self.nodes.worlds(&self.nodes.locals);
+        let mirroring: Vec<bool> = self.skins.iter().map(|skin| is_mirroring(&skin.matrices(&worlds))).collect();
         for instance in &self.instances {
             let shape = &self.shapes[instance.shape];
             // The budget keeps the number of vertices far below 2³².
@@ -188,7 +178,10 @@ impl Model {
             self.budget.take(shape.positions.len() as u64, 24, "the mesh")?;
             self.budget.take(shape.faces.len() as u64, 12, "the mesh")?;
             // glTF 2.0, 3.7.4: a mirror image is wound the other way round.
-            let mirrored = self.is_mirrored(instance, &worlds);
+            let mirrored = match (instance.skin, &shape.influences) {
+                (Some(skin), Some(_)) => mirroring[skin],
+                _ => (worlds[instance.node] * instance.place).matrix3.determinant() < 0.0,
+            };
             let wound = |&[a, b, c]: &[u32; 3]| if mirrored { [a, c, b] } else { [a, b, c] };
             self.faces.extend(shape.faces.iter().map(|face| wound(face).map(|v| v + first)));
             self.vertices += shape.positions.len();
@@ -218,6 +211,11 @@ impl shape::Influences {
             entries.iter().map(|&(j, w)| f64::from(w) * matrices[j as usize].transform_point3(*p)).sum()
         })
     }
+}
+
+/// Whether most of a skin's joints show a mirror image.
+fn is_mirroring(joints: &[DAffine3]) -> bool {
+    2 * joints.iter().filter(|joint| joint.matrix3.determinant() < 0.0).count() > joints.len()
 }
 
 /// What reading a file's parts needs at hand.

@@ -12,8 +12,9 @@ const OPEN: f64 = 0.5;
 const FLAT: f64 = 0.01;
 
 /// #F faces, those turned round that are wound against most of their sheet, or whose sheet, closed but for small holes, is
-/// inside out. `faces` are #F triples of vertex numbers, `positions` #V points. Faces with vertices that do not exist, and
-/// surfaces with one side only, are as they were.
+/// inside out; of faces that are there more than once, all as the first. `faces` are #F triples of vertex numbers, `positions`
+/// #V points. Faces with vertices that do not exist, and surfaces with one side only, are as they were. The inner wall of a
+/// hollow body is turned like any other sheet: what it lies in is not asked.
 pub fn outward(faces: &[[u32; 3]], positions: &[DVec3]) -> Vec<[u32; 3]> {
     let chart = Chart::new(&Mesh { faces, reference: positions, poses: Vec::new() });
     let orientation = &chart.orientation;
@@ -34,6 +35,37 @@ pub fn outward(faces: &[[u32; 3]], positions: &[DVec3]) -> Vec<[u32; 3]> {
         let sheet = orientation.sheet[f] as usize;
         !orientation.one_sided[sheet] && orientation.turned[f] != inside_out(sheet)
     };
-    let face = |(f, &[a, b, c]): (usize, &[u32; 3])| if f < count && turned(f) { [a, c, b] } else { [a, b, c] };
-    faces.iter().enumerate().map(face).collect()
+    let mut outward = faces.to_vec();
+    let first = firsts(&chart);
+    for f in 0..count {
+        let along = is_even(chart.faces[f]) == is_even(chart.faces[first[f]]);
+        if turned(first[f]) == along {
+            outward[f].swap(1, 2);
+        }
+    }
+    outward
+}
+
+/// #F: the first face with the same points.
+fn firsts(chart: &Chart) -> Vec<usize> {
+    let mut first: Vec<usize> = (0..chart.faces.len()).collect();
+    if !chart.repeated.contains(&true) {
+        return first;
+    }
+    let sorted = |f: usize| {
+        let mut points = chart.faces[f];
+        points.sort_unstable();
+        points
+    };
+    let mut order: Vec<usize> = first.clone();
+    order.sort_by_key(|&f| (sorted(f), f));
+    for same in order.chunk_by(|&a, &b| sorted(a) == sorted(b)) {
+        same.iter().for_each(|&f| first[f] = same[0]);
+    }
+    first
+}
+
+/// Which of the two ways round three points are named.
+fn is_even([a, b, c]: [u32; 3]) -> bool {
+    (a < b) == ((b < c) == (a < c))
 }

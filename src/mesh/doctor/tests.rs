@@ -231,6 +231,12 @@ fn faces_are_turned_outwards() {
         faces.iter().enumerate().map(|(f, face)| if f % 5 == 0 { over(face) } else { *face }).collect();
     assert!(alike(&outward(&some, positions), faces));
     assert!(alike(&outward(&wrong[3..], positions), &faces[3..]));
+    // There twice, the same way round or both ways.
+    for second in [&wrong[..], faces] {
+        let twice: Vec<[u32; 3]> = wrong.iter().chain(second).copied().collect();
+        let out = outward(&twice, positions);
+        assert!(alike(&out[..faces.len()], faces) && alike(&out[faces.len()..], faces));
+    }
     // What has no inside, or is no face, stays.
     let open = [[0, 1, 2], [0, 2, 3], [9, 9, 9_999_999]];
     let square = [DVec3::ZERO, DVec3::X, DVec3::new(1.0, 1.0, 0.5), DVec3::Y];

@@ -16,8 +16,8 @@ pub fn check(chart: &Chart) -> Vec<Finding> {
             count: flipped.len(),
             what: counted(flipped.len(), "face shows its back", "faces show their backs"),
             done: "Nothing was turned round, so that faces are written as they were read.".into(),
-            means: "Parts and weights do not ask which side is outside. Proposals and the transfer compare directions, and \
-                    may miss what is there; the light falls wrong."
+            means: "Nothing for parts, weights, proposals and transfers: those that compare directions turn such faces for \
+                    themselves. The light falls wrong."
                 .into(),
             faces: flipped,
         });
