@@ -11,6 +11,9 @@ const ASKED: usize = 400;
 const BESIDE: usize = 12;
 const AROUND: f64 = 2.0;
 
+/// No more pairs than this are looked for: of thousands of pieces fewer around each.
+const MOST_BESIDE: usize = 12_000;
+
 /// Faces of one cell, or of one piece, that are asked for a face of another piece against which they lie.
 const FELT: usize = 30;
 
@@ -56,7 +59,7 @@ pub fn bridges(graph: &DualGraph, centroids: &[DVec3]) -> Vec<[u32; 2]> {
     bridges
 }
 
-/// Pairs of faces of each piece and a dozen of the nearest ones that are not far from it, for its size: the plates of an
+/// Pairs of faces of each piece and up to a dozen of the nearest ones that are not far from it, for its size: the plates of an
 /// armour that sit on one limb. `areas` are those of the faces. Empty for a mesh in one piece.
 pub fn beside(graph: &DualGraph, centroids: &[DVec3], areas: &[f64]) -> Vec<[u32; 2]> {
     let (piece, count) = graph.pieces();
@@ -72,7 +75,7 @@ pub fn beside(graph: &DualGraph, centroids: &[DVec3], areas: &[f64]) -> Vec<[u32
     for (own, faces) in (0_u32..).zip(&faces_of) {
         let reach = AROUND * faces.iter().map(|&f| areas[f as usize]).sum::<f64>().sqrt();
         let mut known = vec![own];
-        for _ in 0..BESIDE {
+        for _ in 0..(MOST_BESIDE / count).min(BESIDE) {
             let other = |face: u32| !known.contains(&piece[face as usize]);
             let nearest = faces.iter().step_by(faces.len().div_ceil(FELT)).fold((reach * reach, None), |best, &f| {
                 tree.nearest(centroids[f as usize], best.0, &other).map_or(best, |(d, face)| (d, Some([f, face])))
