@@ -52,8 +52,8 @@ pub struct Chart<'a> {
     pub normals: Vec<DVec3>,
     /// What lengths are multiplied by: 1 over the diagonal, 1 where that is no number.
     pub scale: f64,
-    /// #F: whether an earlier face has the same points.
-    pub repeated: Vec<bool>,
+    /// #F: the first face with the same points.
+    pub first: Vec<u32>,
     /// The sides of all faces of three points, repeated ones left out, edge by edge.
     pub sides: Vec<Side>,
     /// Which faces look the same way.
@@ -77,10 +77,10 @@ impl<'a> Chart<'a> {
         let faces: Vec<[u32; 3]> = given.iter().map(|face| face.map(|v| stands[v as usize])).collect();
         let corners = |&face: &[u32; 3]| face::corners(reference, face).map(|p| p * scale);
         let normals = given.iter().map(|face| face::double_area_normal(corners(face))).collect();
-        let repeated = repeated(&faces, reference.len());
-        let sides = sides(&faces, &repeated, reference.len());
+        let first = firsts(&faces, reference.len());
+        let sides = sides(&faces, &first, reference.len());
         let orientation = Orientation::new(faces.len(), &sides);
-        Self { given, reference, poses, stands, faces, used, normals, scale, repeated, sides, orientation }
+        Self { given, reference, poses, stands, faces, used, normals, scale, first, sides, orientation }
     }
 
     /// The edges, each as the sides of its faces.
@@ -96,6 +96,11 @@ impl<'a> Chart<'a> {
     /// The faces that are `wanted`.
     pub fn faces_where(&self, wanted: impl Fn(usize) -> bool) -> Vec<u32> {
         (0..self.given.len()).filter(|&f| wanted(f)).map(|f| f as u32).collect()
+    }
+
+    /// Whether an earlier face has the same points.
+    pub fn is_repeated(&self, f: usize) -> bool {
+        self.first[f] as usize != f
     }
 
     /// Whether a face names three different points.
@@ -128,8 +133,8 @@ fn scale(reference: &[DVec3], used: &[bool]) -> f64 {
     if scale.is_finite() && scale > 0.0 { scale } else { 1.0 }
 }
 
-/// #F: whether an earlier face has the same three points.
-fn repeated(faces: &[[u32; 3]], points: usize) -> Vec<bool> {
+/// #F: the first face with the same three points.
+fn firsts(faces: &[[u32; 3]], points: usize) -> Vec<u32> {
     let sorted = |(f, face): (usize, &[u32; 3])| {
         let mut points = *face;
         points.sort_unstable();
@@ -138,16 +143,16 @@ fn repeated(faces: &[[u32; 3]], points: usize) -> Vec<bool> {
     let mut order: Vec<([u32; 3], u32)> =
         faces.iter().enumerate().filter(|(_, face)| is_whole(**face)).map(sorted).collect();
     sort_by_point(&mut order, points, |entry| entry.0[0]);
-    let mut repeated = vec![false; faces.len()];
+    let mut first: Vec<u32> = (0..faces.len() as u32).collect();
     for same in order.chunk_by(|a, b| a.0 == b.0) {
-        same[1..].iter().for_each(|&(_, f)| repeated[f as usize] = true);
+        same.iter().for_each(|&(_, f)| first[f as usize] = same[0].1);
     }
-    repeated
+    first
 }
 
-fn sides(faces: &[[u32; 3]], repeated: &[bool], points: usize) -> Vec<Side> {
+fn sides(faces: &[[u32; 3]], first: &[u32], points: usize) -> Vec<Side> {
     let mut sides = Vec::with_capacity(3 * faces.len());
-    for (f, &[a, b, c]) in faces.iter().enumerate().filter(|&(f, face)| is_whole(*face) && !repeated[f]) {
+    for (f, &[a, b, c]) in faces.iter().enumerate().filter(|&(f, face)| is_whole(*face) && first[f] as usize == f) {
         for (v, w) in [(a, b), (b, c), (c, a)] {
             let edge = u64::from(v.min(w)) << 32 | u64::from(v.max(w));
             sides.push(Side { edge, tag: (f as u32) << 1 | u32::from(v < w) });

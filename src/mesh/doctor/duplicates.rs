@@ -6,7 +6,7 @@ use super::{Code, Finding, Severity};
 
 /// Faces with the same three points as an earlier one, in any order.
 pub fn check(chart: &Chart) -> Option<Finding> {
-    let faces = chart.faces_where(|f| chart.repeated[f]);
+    let faces = chart.faces_where(|f| chart.is_repeated(f));
     (!faces.is_empty()).then(|| Finding {
         code: Code::DuplicateFaces,
         severity: Severity::Care,

@@ -34,7 +34,8 @@ pub fn check(chart: &Chart) -> Option<Finding> {
 pub fn volumes(chart: &Chart) -> Vec<f64> {
     let orientation = &chart.orientation;
     let mut volume = vec![0.0; chart.faces.len()];
-    for (f, &sheet) in orientation.sheet.iter().enumerate().filter(|&(f, _)| chart.is_whole(f) && !chart.repeated[f]) {
+    for (f, &sheet) in orientation.sheet.iter().enumerate().filter(|&(f, _)| chart.is_whole(f) && !chart.is_repeated(f))
+    {
         let origin = chart.reference[chart.given[sheet as usize][0] as usize];
         let [a, b, c] = face::corners(chart.reference, chart.given[f]).map(|p| (p - origin) * chart.scale);
         volume[sheet as usize] += if orientation.turned[f] { -1.0 } else { 1.0 } * a.dot(b.cross(c));

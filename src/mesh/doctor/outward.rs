@@ -19,6 +19,10 @@ pub fn outward(faces: &[[u32; 3]], positions: &[DVec3]) -> Vec<[u32; 3]> {
     let chart = Chart::new(&Mesh { faces, reference: positions, poses: Vec::new() });
     let orientation = &chart.orientation;
     let count = chart.faces.len();
+    if count < faces.len() {
+        // There are no vertices.
+        return faces.to_vec();
+    }
     let (mut open, mut area) = (vec![0.0; count], vec![0.0; count]);
     for edge in chart.edges() {
         let &[side] = edge else { continue };
@@ -35,34 +39,12 @@ pub fn outward(faces: &[[u32; 3]], positions: &[DVec3]) -> Vec<[u32; 3]> {
         let sheet = orientation.sheet[f] as usize;
         !orientation.one_sided[sheet] && orientation.turned[f] != inside_out(sheet)
     };
-    let mut outward = faces.to_vec();
-    let first = firsts(&chart);
-    for f in 0..count {
-        let along = is_even(chart.faces[f]) == is_even(chart.faces[first[f]]);
-        if turned(first[f]) == along {
-            outward[f].swap(1, 2);
-        }
-    }
-    outward
-}
-
-/// #F: the first face with the same points.
-fn firsts(chart: &Chart) -> Vec<usize> {
-    let mut first: Vec<usize> = (0..chart.faces.len()).collect();
-    if !chart.repeated.contains(&true) {
-        return first;
-    }
-    let sorted = |f: usize| {
-        let mut points = chart.faces[f];
-        points.sort_unstable();
-        points
+    let wound = |(f, &[a, b, c]): (usize, &[u32; 3])| {
+        let first = chart.first[f] as usize;
+        let along = is_even(chart.faces[f]) == is_even(chart.faces[first]);
+        if turned(first) == along { [a, c, b] } else { [a, b, c] }
     };
-    let mut order: Vec<usize> = first.clone();
-    order.sort_by_key(|&f| (sorted(f), f));
-    for same in order.chunk_by(|&a, &b| sorted(a) == sorted(b)) {
-        same.iter().for_each(|&f| first[f] = same[0]);
-    }
-    first
+    faces.iter().enumerate().map(wound).collect()
 }
 
 /// Which of the two ways round three points are named.
