@@ -87,6 +87,7 @@ impl Biharmonic {
     async fn columns_like(&self, crew: &impl Crew, before: &Weights, [places, old]: &[Vec<u32>; 2]) -> Vec<Column> {
         let known = |place: u32| old.iter().position(|&p| p == place).and_then(|i| before.raw.get(i));
         let column = |j: usize| match known(places[j]) {
+            _ if self.finest().is_alone(places, places[j]) => self.column(places, j),
             Some(column) => self.updated(column, places, old, j),
             None => match self.moved(before, places, old, j) {
                 Some(column) => self.carried(column, places, j),
@@ -139,9 +140,6 @@ impl Biharmonic {
 
     /// The column of a handle that has stayed, while others came and went.
     fn updated(&self, before: &Column, places: &[u32], old_places: &[u32], handle: usize) -> Column {
-        if self.finest().is_alone(places, places[handle]) {
-            return self.finest().whole(places, places[handle]);
-        }
         let members = self.finest().members_around(places[handle]);
         let piece = self.finest().surface.piece[places[handle] as usize];
         let here = |place: &&u32| self.finest().surface.piece[**place as usize] == piece;
@@ -174,9 +172,6 @@ impl Biharmonic {
     /// The column of a handle that has moved: nearly what it was.
     fn carried(&self, before: &Column, places: &[u32], handle: usize) -> Column {
         let members = self.finest().members_around(places[handle]);
-        if self.finest().is_alone(places, places[handle]) {
-            return self.finest().whole(places, places[handle]);
-        }
         let mut column = self.finest().open(places, places[handle]);
         for &v in members {
             let v = v as usize;

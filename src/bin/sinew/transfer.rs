@@ -61,7 +61,8 @@ pub struct Transfer {
     #[arg(long, value_name = "FILE", num_args = 1..)]
     truth: Vec<PathBuf>,
     /// Transfer by every method and write how far each is from the truth
-    #[arg(long, value_name = "FILE.json", requires = "truth", conflicts_with_all = ["out", "out_poses", "report", "method", "variant"])]
+    #[arg(long, value_name = "FILE.json", requires = "truth")]
+    #[arg(conflicts_with_all = ["out", "out_poses", "report", "method", "variant"])]
     compare: Option<PathBuf>,
     /// By gradients or posed: vertices of the target that go exactly as far as the source does there, as feet that stand
     #[arg(long, value_name = "VERTEX", value_delimiter = ',')]

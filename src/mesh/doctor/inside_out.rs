@@ -22,8 +22,8 @@ pub fn check(chart: &Chart) -> Option<Finding> {
         what: counted(count, "closed piece is inside out", "closed pieces are inside out"),
         done: "Nothing was turned round, so that faces are written as they were read.".into(),
         means: "Little for parts, weights, proposals and transfers: those that ask which side is outside turn such pieces \
-                round for themselves, unless they are as thin as a plate. Viewers that leave out the back of faces show the inside: turn the faces round where \
-                that is not meant."
+                round for themselves, unless they are as thin as a plate. Viewers that leave out the back of faces show the \
+                inside: turn the faces round where that is not meant."
             .into(),
         faces: chart.faces_where(|f| inside_out(orientation.sheet[f] as usize)),
     })
