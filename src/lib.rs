@@ -20,6 +20,7 @@ pub mod import;
 #[cfg(feature = "solvers")]
 pub mod keypoints;
 pub mod linalg;
+pub mod look;
 pub mod memory;
 pub mod mesh;
 pub mod observer;

@@ -29,7 +29,7 @@ fn rate(made: &Made) -> Sampling {
 #[test]
 fn the_exact_form_comes_back_as_it_was() {
     let made = Made::new("horse", 2000, 8, 4);
-    let imported = read(exact(&made.sequence), rate(&made));
+    let imported = read(exact(&made.sequence, None), rate(&made));
     assert_eq!(imported.warnings, [], "nothing to mend");
     let (was, is) = (&made.sequence, &imported.sequence);
     assert_eq!(was.faces(), is.faces());

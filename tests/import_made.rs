@@ -12,6 +12,8 @@ mod folders;
 mod gltf_maker;
 #[path = "import/hostile.rs"]
 mod hostile;
+#[path = "import/look.rs"]
+mod look;
 #[path = "import/scenes.rs"]
 mod scenes;
 
@@ -430,10 +432,11 @@ fn damaged(bytes: Vec<u8>) -> impl Strategy<Value = Vec<u8>> {
 /// Whether a file can be opened; what comes of it must be sound, or a sentence.
 fn opens_or_says_why(name: &str, bytes: Vec<u8>) -> bool {
     // Few poses, so that a damaged time does not make the test slow.
-    let options = Options { sampling: Sampling::Keys, ..Options::default() };
+    let options = Options { sampling: Sampling::Keys, look: true, ..Options::default() };
     match open(&[file(name, bytes)], &options) {
-        Ok(imported) => {
-            assert!(imported.sequence.reference().iter().all(|p| p.is_finite()));
+        Ok(Imported { sequence, look, .. }) => {
+            assert!(sequence.reference().iter().all(|p| p.is_finite()));
+            assert!(look.is_none_or(|look| look.fits(sequence.reference().len(), sequence.faces().len())));
             true
         }
         Err(ImportError(why)) => {

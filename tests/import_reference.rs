@@ -67,7 +67,7 @@ fn poses_agree_with_three_js() {
         let beside = |end: &str| path.with_file_name(format!("{name}.{end}"));
         let asset = data.join(meta["file"].as_str().unwrap());
         let files = with_neighbours(&asset);
-        let model = Model::read(&files[0], &files, &mut Vec::new()).unwrap();
+        let model = Model::read(&files[0], &files, false, &mut Vec::new()).unwrap();
         let their_faces: Vec<u32> = std::fs::read(beside("faces.i32"))
             .unwrap()
             .chunks_exact(4)

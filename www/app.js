@@ -7,7 +7,7 @@
  *
  * What can be undone is one small immutable object, {@link Doc}; all else follows from it or is only looked at.
  */
-import { collect, fetchSource, resting } from './files.js';
+import { collect, fetchSource, originals, resting } from './files.js';
 import { plural } from './format.js';
 import { History } from './history.js';
 import { KeyPoints, MOST_POINTS } from './keypoints.js';
@@ -328,7 +328,8 @@ export class App extends EventTarget {
   exportRigid() {
     const { result } = this;
     if (!result || this.opening) return undefined;
-    return this.work.run('export rigid', 'writing the file', () => this.engine.call('export_rigid', { labels: result.labels }));
+    return this.work.run('export rigid', 'writing the file', async () =>
+      this.engine.call('export_rigid', { labels: result.labels, ...await originals(this.source) }));
   }
 
   /** The open sequence in its coloured parts as the bytes of a GLB; undefined if that did not work. */

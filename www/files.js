@@ -35,6 +35,13 @@ function refuse(files) {
   }
 }
 
+/** What the engine reads the look of a figure from: the files that it was opened from, as far as they are still there. */
+export async function originals(source) {
+  const none = { files: [], options: {} };
+  if (source?.kind !== 'files') return none;
+  return collect(source.files, source.options).catch(() => none);
+}
+
 const readAll = (files) => Promise.all(files.map(async ({ name, blob }) => {
   try {
     return { name, bytes: new Uint8Array(await blob.arrayBuffer()) };
@@ -74,7 +81,7 @@ async function walk(entry) {
 export const chosen = (list) => [...list].map((file) => ({ name: file.webkitRelativePath || file.name, blob: file }));
 
 /**
- * Downloads what `?src=` names; of a .gltf also the buffers beside it.
+ * Downloads what `?src=` names; of a .gltf also the buffers and images beside it.
  * @param {string} address https, or of this very site
  */
 export async function fetchSource(address, progress) {
@@ -82,19 +89,32 @@ export async function fetchSource(address, progress) {
   const url = allowed(address, location.href);
   const main = await download(url, budget, progress);
   if (!/\.gltf$/i.test(url.pathname)) return [main];
-  let buffers = [];
+  let document;
   try {
-    buffers = JSON.parse(await main.blob.text()).buffers ?? [];
+    document = JSON.parse(await main.blob.text());
   } catch {
     throw new Error(`“${main.name}” is not a glTF file.`);
   }
-  const beside = buffers.map((buffer) => buffer?.uri).filter((uri) => typeof uri === 'string' && !uri.startsWith('data:'));
   const files = [main];
-  for (const uri of new Set(beside)) {
+  for (const uri of beside(document?.buffers)) {
     const file = await download(allowed(uri, url), budget, progress);
     files.push({ ...file, name: decoded(uri) });
   }
+  for (const uri of beside(document?.images)) {
+    try {
+      const file = await download(allowed(uri, url), budget, progress);
+      files.push({ ...file, name: decoded(uri) });
+    } catch {
+      // Without a picture it has its shape and motion all the same.
+    }
+  }
   return files;
+}
+
+/** The addresses in a list of a glTF document. */
+function beside(list) {
+  const addresses = Array.isArray(list) ? list.map((entry) => entry?.uri) : [];
+  return new Set(addresses.filter((uri) => typeof uri === 'string' && !uri.startsWith('data:')));
 }
 
 /** What a part of an address stands for; itself where it is no valid encoding. */

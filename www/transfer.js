@@ -1,4 +1,5 @@
 /** The motion of the target: follows from the pairs, and can be taken away as a file. */
+import { originals } from './files.js';
 import { latest } from './work.js';
 
 export class Transfer {
@@ -104,16 +105,18 @@ export class Transfer {
   /**
    * The moving target as a GLB, made once.
    * @param {'exact'|'light'} form
-   * @returns {Promise<{blob: Blob, error: number, rms: number}|undefined>} errors that the form adds, over the diagonal
+   * @returns {Promise<{blob: Blob, error: number, rms: number, images: number}|undefined>} errors that the form adds, over
+   *   the diagonal; how many images it has, −1: it is of clay
    */
   async file(form) {
     const { app, motion } = this;
     if (!motion) return undefined;
     if (!this.files.has(form)) {
-      const answer = await app.work.run(`export ${form}`, 'writing the file', (progress) =>
-        app.engine.call('export_transfer', { form }, { progress }));
+      const answer = await app.work.run(`export ${form}`, 'writing the file', async (progress) =>
+        app.engine.call('export_transfer', { form, ...await originals(app.doc.target.source) }, { progress }));
       if (!answer || this.motion !== motion) return undefined;
-      this.files.set(form, { blob: new Blob([answer.bytes], { type: 'model/gltf-binary' }), error: answer.error, rms: answer.rms });
+      const { bytes, error, rms, images } = answer;
+      this.files.set(form, { blob: new Blob([bytes], { type: 'model/gltf-binary' }), error, rms, images });
       app.changed('files');
     }
     return this.files.get(form);

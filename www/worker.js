@@ -31,7 +31,7 @@ const operations = {
   segment: ({ parameters }, progress) => engine.segment(parameters, progress),
   parts: ({ parameters, parts }, progress) => engine.parts(parameters, parts, progress),
   export: ({ labels, colours }) => engine.export(labels, colours),
-  export_rigid: ({ labels }) => engine.export_rigid(labels),
+  export_rigid: ({ labels, files, options }) => engine.export_rigid(labels, files, options),
   target: ({ files, recipe, options }) => (recipe ? engine.target_zoo(recipe) : engine.target(files, options)),
   restore_target: ({ kept }) => engine.restore_target(kept),
   drop_target: () => engine.drop_target(),
@@ -40,7 +40,7 @@ const operations = {
   transfer: ({ pairs, parameters, quick }, progress) => (BY_FACES.has(parameters.method)
     ? engine.transfer_faces(pairs, parameters, progress) : engine.transfer(pairs, parameters, quick, progress)),
   positions_by: ({ pairs, parameters }, progress) => engine.positions_by(pairs, parameters, progress),
-  export_transfer: ({ form }) => engine.export_transfer(form),
+  export_transfer: ({ form, files, options }) => engine.export_transfer(form, files, options),
 };
 
 for (const operation of Object.keys(shared)) {

@@ -8,7 +8,7 @@ pub fn opens_or_says_why(files: &[(&str, &[u8])]) {
     let files: Vec<File> =
         files.iter().map(|(name, bytes)| File { name: (*name).into(), bytes: bytes.to_vec() }).collect();
     // A pose at every key: a damaged time does not make thousands of them.
-    let options = Options { sampling: Sampling::Keys, ..Options::default() };
+    let options = Options { sampling: Sampling::Keys, look: true, ..Options::default() };
     match open(&files, &options) {
         Ok(imported) => check(&imported),
         Err(error) => assert!(error.0.len() > 10 && !error.0.contains('\n'), "not a sentence: {error}"),
@@ -25,6 +25,9 @@ fn check(imported: &Imported) {
         assert!(positions.iter().all(|p| p.is_finite()));
     }
     assert!(sequence.diagonal().is_finite());
+    if let Some(look) = &imported.look {
+        assert!(look.fits(vertices, sequence.faces().len()));
+    }
 }
 
 /// A GLB of a document and its buffer.

@@ -18,15 +18,17 @@ enum Kind {
     Indices,
     /// Joint numbers of vertices.
     Joints,
-    /// Joint weights of vertices.
+    /// Joint weights and colours of vertices.
     Weights,
     /// Inverse bind matrices.
     Binds,
     /// Times and values of animations.
     Keys,
+    /// Coordinates of textures.
+    TextureCoordinates,
 }
 
-const KINDS: usize = 6;
+const KINDS: usize = 7;
 
 /// Collects binary data with the views and accessors that describe it.
 #[derive(Default)]
@@ -36,6 +38,8 @@ pub struct Writer {
     data: [Vec<u8>; KINDS],
     /// Bytes from one vertex's joint numbers to the next one's.
     joint_stride: usize,
+    /// The images of the document, in their order; each is a view of its own.
+    images: Vec<Vec<u8>>,
 }
 
 /// A point as 32-bit floats, brought into their range.
@@ -99,6 +103,17 @@ impl Writer {
         self.floats(Kind::Weights, "VEC4", 4, values.iter().flatten().copied())
     }
 
+    /// Two or four numbers a vertex: coordinates of a texture, or a colour.
+    pub fn layer(&mut self, width: usize, values: &[f32]) -> usize {
+        let (kind, shape) = if width == 2 { (Kind::TextureCoordinates, "VEC2") } else { (Kind::Weights, "VEC4") };
+        self.floats(kind, shape, width, values.iter().copied())
+    }
+
+    /// The bytes of the document's next image.
+    pub fn image(&mut self, bytes: &[u8]) {
+        self.images.push(bytes.to_vec());
+    }
+
     /// Inverse bind matrices.
     pub fn binds(&mut self, values: &[Mat4]) -> usize {
         self.floats(Kind::Binds, "MAT4", 16, values.iter().flat_map(|m| m.to_cols_array()))
@@ -140,7 +155,7 @@ impl Writer {
                 continue;
             }
             let mut view = json!({ "buffer": 0, "byteOffset": binary.len(), "byteLength": data.len() });
-            let stride = [12, 0, joint_stride, 16, 0, 0][kind];
+            let stride = [12, 0, joint_stride, 16, 0, 0, 8][kind];
             if stride > 0 {
                 view["byteStride"] = json!(stride);
                 view["target"] = json!(ARRAY_BUFFER);
@@ -155,8 +170,14 @@ impl Writer {
 
     /// Puts document and data together: a header and two chunks, each padded to four bytes.
     pub fn finish(self, mut document: Value) -> Vec<u8> {
-        let Self { accessors, data, joint_stride } = self;
-        let (views, binary, numbers) = Self::views(data, joint_stride);
+        let Self { accessors, data, joint_stride, images } = self;
+        let (mut views, mut binary, numbers) = Self::views(data, joint_stride);
+        for (number, image) in images.iter().enumerate() {
+            document["images"][number]["bufferView"] = json!(views.len());
+            views.push(json!({ "buffer": 0, "byteOffset": binary.len(), "byteLength": image.len() }));
+            binary.extend_from_slice(image);
+            binary.resize(binary.len().next_multiple_of(4), 0);
+        }
         if !binary.is_empty() {
             let accessors = accessors.into_iter().map(|(kind, mut accessor)| {
                 accessor["bufferView"] = json!(numbers[kind as usize]);

@@ -1,11 +1,12 @@
-//! A moving mesh in coloured parts, as one GLB file.
+//! A moving mesh as one GLB file, exactly.
 //!
-//! glTF 2.0 (Khronos Group, ISO/IEC 12113:2022), binary form. Every part is a primitive with its own matte material;
+//! glTF 2.0 (Khronos Group, ISO/IEC 12113:2022), binary form. Every part is a primitive with its own material;
 //! all of them share one set of positions. Every pose is a morph target, and one animation shows them one after
 //! the other at their times. That plays back exactly the positions of the sequence (as 32-bit floats) in any
 //! viewer, whatever made them move.
 
 use super::container::{Writer, single};
+use super::cover::Cover;
 use super::timing;
 use crate::sequence::Sequence;
 use glam::{DVec3, Vec3};
@@ -13,8 +14,6 @@ use serde_json::{Value, json};
 
 /// Normals are written for smooth shading unless positions alone take more bytes than this; then viewers shade flat.
 const SMOOTH_LIMIT: usize = 24 << 20;
-/// Colour of parts that were given none.
-const GREY: [f32; 3] = [0.5; 3];
 
 /// The sequence as a GLB file with one primitive and one material a part, called "part 1" and so on.
 ///
@@ -27,6 +26,11 @@ pub fn parts(sequence: &Sequence, labels: &[u32], colours: &[[f32; 3]]) -> Vec<u
 
 /// The same, with the names of the parts as names of their materials.
 pub fn named_parts(sequence: &Sequence, labels: &[u32], colours: &[[f32; 3]], names: &[String]) -> Vec<u8> {
+    covered(sequence, Cover::painted(sequence.faces(), labels, colours, names))
+}
+
+/// The sequence as a GLB file with a morph target for every pose, under a cover of its faces.
+pub(super) fn covered(sequence: &Sequence, cover: Cover) -> Vec<u8> {
     let mut file = Writer::default();
     let mut document = json!({
         "asset": Writer::asset(),
@@ -34,57 +38,18 @@ pub fn named_parts(sequence: &Sequence, labels: &[u32], colours: &[[f32; 3]], na
         "scenes": [{ "nodes": [0] }],
         "nodes": [{ "name": sequence.name() }],
     });
-    let groups = faces_by_part(sequence.faces(), labels);
-    if !groups.is_empty() {
-        let vertices = Vertices::write(sequence, &mut file);
-        let mut materials = Vec::new();
-        let mut primitives = Vec::new();
-        for (part, faces) in &groups {
-            let indices = file.indices(faces);
-            primitives.push(json!({
-                "attributes": vertices.reference,
-                "indices": indices,
-                "material": materials.len(),
-                "mode": 4,
-            }));
-            if !vertices.targets.is_empty()
-                && let Some(primitive) = primitives.last_mut()
-            {
-                primitive["targets"] = json!(vertices.targets);
-            }
-            materials.push(material(*part, colours, names));
-        }
+    if !sequence.faces().is_empty() {
+        let Vertices { reference, targets } = Vertices::write(sequence, &cover, &mut file);
+        let primitives = cover.write(&mut file, &mut document, reference, &targets);
         document["nodes"][0]["mesh"] = json!(0);
         document["meshes"] = json!([{ "name": sequence.name(), "primitives": primitives }]);
-        document["materials"] = json!(materials);
-        if !vertices.targets.is_empty() {
-            document["meshes"][0]["weights"] = json!(vec![0.0; vertices.targets.len()]);
+        if !targets.is_empty() {
+            document["meshes"][0]["weights"] = json!(vec![0.0; targets.len()]);
             document["meshes"][0]["extras"] = json!({ "targetNames": pose_names(sequence) });
             document["animations"] = json!([animation(sequence, &mut file)]);
         }
     }
     file.finish(document)
-}
-
-/// Faces of each part that has any, by rising part number.
-fn faces_by_part(faces: &[[u32; 3]], labels: &[u32]) -> Vec<(u32, Vec<[u32; 3]>)> {
-    let mut order: Vec<(u32, usize)> = (0..faces.len()).map(|f| (labels.get(f).copied().unwrap_or(0), f)).collect();
-    order.sort_unstable();
-    let chunks = order.chunk_by(|a, b| a.0 == b.0);
-    chunks.map(|chunk| (chunk[0].0, chunk.iter().map(|&(_, f)| faces[f]).collect())).collect()
-}
-
-pub(super) fn material(part: u32, colours: &[[f32; 3]], names: &[String]) -> Value {
-    let [r, g, b] = colours
-        .get(part as usize)
-        .filter(|colour| colour.iter().all(|c| c.is_finite()))
-        .unwrap_or(&GREY)
-        .map(|c| f64::from(c.clamp(0.0, 1.0)));
-    let name = names.get(part as usize).cloned().unwrap_or_else(|| format!("part {}", u64::from(part) + 1));
-    json!({
-        "name": name,
-        "pbrMetallicRoughness": { "baseColorFactor": [r, g, b, 1.0], "metallicFactor": 0.0, "roughnessFactor": 0.9 },
-    })
 }
 
 fn pose_names(sequence: &Sequence) -> Vec<&str> {
@@ -98,40 +63,28 @@ struct Vertices {
 }
 
 impl Vertices {
-    fn write(sequence: &Sequence, file: &mut Writer) -> Self {
-        let base: Vec<Vec3> = sequence.reference().iter().map(|&p| single(p)).collect();
+    fn write(sequence: &Sequence, cover: &Cover, file: &mut Writer) -> Self {
+        let reference = cover.spread(sequence.reference());
+        let base: Vec<Vec3> = reference.iter().map(|&p| single(p)).collect();
         let smooth = 12 * base.len() * (1 + sequence.poses().len()) <= SMOOTH_LIMIT;
-        let base_normals = if smooth { normals(sequence.faces(), sequence.reference()) } else { Vec::new() };
-        let mut reference = json!({ "POSITION": file.vectors(&base) });
-        if smooth {
-            reference["NORMAL"] = json!(file.vectors(&base_normals));
+        let base_normals = if smooth { cover.normals(&reference) } else { None };
+        let mut attributes = json!({ "POSITION": file.vectors(&base) });
+        if let Some(normals) = &base_normals {
+            attributes["NORMAL"] = json!(file.vectors(normals));
         }
         let mut targets = Vec::with_capacity(sequence.poses().len());
         for pose in sequence.poses() {
-            let moved = pose.positions.iter().zip(&base).map(|(&p, b)| single(p - b.as_dvec3()));
+            let positions = cover.spread(&pose.positions);
+            let moved = positions.iter().zip(&base).map(|(&p, b)| single(p - b.as_dvec3()));
             let mut target = json!({ "POSITION": file.vectors(&moved.collect::<Vec<_>>()) });
-            if smooth {
-                let turned = normals(sequence.faces(), &pose.positions);
-                let turned: Vec<Vec3> = turned.iter().zip(&base_normals).map(|(n, b)| *n - *b).collect();
+            if let Some((base, turned)) = base_normals.as_ref().zip(cover.normals(&positions)) {
+                let turned: Vec<Vec3> = turned.iter().zip(base).map(|(n, b)| *n - *b).collect();
                 target["NORMAL"] = json!(file.vectors(&turned));
             }
             targets.push(target);
         }
-        Self { reference, targets }
+        Self { reference: attributes, targets }
     }
-}
-
-/// Area-weighted unit normals; +y where there is none.
-pub(super) fn normals(faces: &[[u32; 3]], positions: &[DVec3]) -> Vec<Vec3> {
-    let mut sums = vec![DVec3::ZERO; positions.len()];
-    for corners in faces {
-        let [a, b, c] = corners.map(|v| positions[v as usize]);
-        let normal = (b - a).cross(c - a);
-        for &v in corners {
-            sums[v as usize] += normal;
-        }
-    }
-    sums.into_iter().map(|n| n.try_normalize().unwrap_or(DVec3::Y).as_vec3().normalize_or(Vec3::Y)).collect()
 }
 
 /// One weight a pose, 1 at its own time.

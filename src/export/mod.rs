@@ -2,6 +2,7 @@
 
 pub mod animation;
 mod container;
+mod cover;
 pub mod glb;
 pub mod labels;
 pub mod rigid;

@@ -7,6 +7,7 @@
 
 use super::skin::{Influences, LightError, Skin, SkinPose, light};
 use crate::linalg::rigid_fit::Moments;
+use crate::look::Look;
 use crate::mesh::face;
 use crate::sequence::Sequence;
 use glam::{DAffine3, DVec3};
@@ -26,11 +27,12 @@ pub struct Rigid {
     pub largest: f64,
 }
 
-/// The sequence as a skin with a joint for each part; `labels` is #F part numbers (a face without one counts as part 0).
+/// The sequence as a skin with a joint for each part; `labels` is #F part numbers (a face without one counts as part 0);
+/// in one colour where it has no look that fits it.
 ///
 /// A vertex follows the part that has the largest area around it, and each part moves in each pose by the rigid motion
 /// that is best for its vertices.
-pub fn rigid(sequence: &Sequence, labels: &[u32]) -> Result<Rigid, LightError> {
+pub fn rigid(sequence: &Sequence, labels: &[u32], look: Option<&Look>) -> Result<Rigid, LightError> {
     let reference = sequence.reference();
     let parts = labels.iter().max().map_or(1, |&most| most as usize + 1);
     if parts > usize::from(u16::MAX) || parts.saturating_mul(reference.len()) > MOST {
@@ -55,6 +57,7 @@ pub fn rigid(sequence: &Sequence, labels: &[u32]) -> Result<Rigid, LightError> {
         weights: &weights,
         handles: parts,
         poses: &skin_poses,
+        look,
     };
     let file = light(&skin, Influences::Four)?;
     let (mut sum, mut largest) = (0.0, 0.0_f64);
@@ -115,7 +118,7 @@ mod tests {
     #[test]
     fn bones_come_back_as_joints() {
         let creature = make(&Recipe { faces: 1500, poses: 6, exact: true, ..Recipe::default() }).unwrap();
-        let made = rigid(&creature.sequence, &creature.labels).unwrap();
+        let made = rigid(&creature.sequence, &creature.labels, None).unwrap();
         // Only vertices between two bones, which follow one of them, are off, and those not at all: each is on one bone.
         assert!(made.rms < 0.02 && made.rms <= made.largest, "{} {}", made.rms, made.largest);
         let gltf = gltf::Gltf::from_slice(&made.bytes).unwrap();
@@ -136,9 +139,9 @@ mod tests {
     #[test]
     fn one_part_and_missing_labels_will_do() {
         let creature = make(&Recipe { faces: 1500, poses: 3, ..Recipe::default() }).unwrap();
-        let made = rigid(&creature.sequence, &[]).unwrap();
+        let made = rigid(&creature.sequence, &[], None).unwrap();
         assert!(made.rms > 0.0 && made.rms.is_finite() && made.largest >= made.rms);
-        let parts = rigid(&creature.sequence, &creature.labels).unwrap();
+        let parts = rigid(&creature.sequence, &creature.labels, None).unwrap();
         assert!(parts.rms < 0.5 * made.rms, "{} {}", parts.rms, made.rms);
     }
 }

@@ -8,19 +8,22 @@ pub use super::zip::is_zip;
 
 /// Ends of the names of files that no mesh needs: pictures, sounds, texts.
 const NOT_NEEDED: &[&str] = &[
-    "png", "jpg", "jpeg", "webp", "gif", "bmp", "tga", "tif", "tiff", "hdr", "exr", "ktx", "ktx2", "basis", "dds",
-    "mtl", "txt", "md", "pdf", "html", "xml", "mp3", "wav", "mp4", "blend", "fbx", "svg",
+    "gif", "bmp", "tga", "tif", "tiff", "hdr", "exr", "ktx", "basis", "dds", "mtl", "txt", "md", "pdf", "html", "xml",
+    "mp3", "wav", "mp4", "blend", "fbx", "svg",
 ];
+
+/// Ends of the names of images that only a look needs.
+const IMAGES: &[&str] = &["png", "jpg", "jpeg", "webp", "ktx2"];
 
 /// The files in an archive that a mesh may need, in a folder named like it. What they will take is added up before
 /// anything is unpacked, and each is unpacked to the size that was announced and no further.
-pub fn unpack(archive: &File, budget: &mut Budget) -> Result<Vec<File>, ImportError> {
+pub fn unpack(archive: &File, look: bool, budget: &mut Budget) -> Result<Vec<File>, ImportError> {
     let name = &archive.name;
     let unreadable =
         |what| ImportError(format!("{name} is not a readable zip archive ({what}); get it again, or unpack it first"));
     let mut wanted: Vec<Entry> = Vec::new();
     for entry in zip::entries(&archive.bytes).map_err(unreadable)? {
-        if !entry.name.ends_with('/') && may_be_needed(&entry.name) {
+        if !entry.name.ends_with('/') && may_be_needed(&entry.name, look) {
             budget.unpack(entry.size, &format!("\"{}\" in {name}", shortened(&entry.name)))?;
             wanted.push(entry);
         }
@@ -35,14 +38,14 @@ pub fn unpack(archive: &File, budget: &mut Budget) -> Result<Vec<File>, ImportEr
     wanted.into_iter().map(unpack).collect()
 }
 
-/// Whether a file in a folder or an archive may be needed to read a mesh: not a picture, a sound or a text, and not
-/// what file managers leave behind.
-pub fn may_be_needed(name: &str) -> bool {
+/// Whether a file in a folder or an archive may be needed to read a mesh: not a sound or a text, a picture only for its
+/// look, and not what file managers leave behind.
+pub fn may_be_needed(name: &str, look: bool) -> bool {
     if is_hidden(name) {
         return false;
     }
     let end = name.rsplit_once('.').map(|(_, end)| end.to_ascii_lowercase());
-    end.is_none_or(|end| !NOT_NEEDED.contains(&end.as_str()))
+    end.is_none_or(|end| !NOT_NEEDED.contains(&end.as_str()) && (look || !IMAGES.contains(&end.as_str())))
 }
 
 /// A name, short enough for a sentence.

@@ -22,6 +22,7 @@ mod zip;
 pub use archive::may_be_needed;
 pub use natural::natural_order;
 
+use crate::look::Look;
 use crate::sequence::Sequence;
 use crate::warning::Warning;
 use limits::Budget;
@@ -49,11 +50,13 @@ pub struct Options {
     pub reference: Reference,
     /// Join vertices that agree in every pose (glTF only: seams of UVs and normals; STL is welded in any case).
     pub weld: bool,
+    /// Read what the mesh looks like, too (glTF only).
+    pub look: bool,
 }
 
 impl Default for Options {
     fn default() -> Self {
-        Self { clip: None, sampling: Sampling::default(), reference: Reference::default(), weld: true }
+        Self { clip: None, sampling: Sampling::default(), reference: Reference::default(), weld: true, look: false }
     }
 }
 
@@ -107,6 +110,8 @@ pub struct Imported {
     /// The number of faces that the input has, a polygon counted as one face. `sequence.polygons()` says which of
     /// them each triangle of the sequence comes from, where the two differ.
     pub input_faces: usize,
+    /// What the mesh looks like, if that was asked for and the file says it.
+    pub look: Option<Look>,
     /// What was noticed on the way.
     pub warnings: Vec<Warning>,
 }
@@ -138,7 +143,7 @@ impl ImportError {
 /// [`natural_order`] is the reference pose, the others are its poses. A zip archive stands for what is in it. Files
 /// that are none of these are passed over.
 pub fn open(files: &[File], options: &Options) -> Result<Imported, ImportError> {
-    let unpacked = unpacked(files)?;
+    let unpacked = unpacked(files, options.look)?;
     let files = unpacked.as_ref();
     let mut order: Vec<&File> = files.iter().collect();
     natural::sort(&mut order);
@@ -148,7 +153,7 @@ pub fn open(files: &[File], options: &Options) -> Result<Imported, ImportError> 
 /// Reads the given files in the given order, as on a command line: of OBJ, OFF, PLY and STL files the first is the
 /// reference pose, the others are its poses. Otherwise as [`open`]; what is in an archive comes in natural order.
 pub fn open_in_order(files: &[File], options: &Options) -> Result<Imported, ImportError> {
-    let unpacked = unpacked(files)?;
+    let unpacked = unpacked(files, options.look)?;
     let files = unpacked.as_ref();
     open_listed(&files.iter().collect::<Vec<_>>(), files, options).map_err(ImportError::on_one_line)
 }
@@ -158,7 +163,7 @@ pub fn open_in_order(files: &[File], options: &Options) -> Result<Imported, Impo
 ///
 /// Returns with the result whether the poses joined the mesh.
 pub fn open_more(still: &[File], more: &[File], options: &Options) -> Result<(Imported, bool), ImportError> {
-    let (still, more) = (unpacked(still)?, unpacked(more)?);
+    let (still, more) = (unpacked(still, false)?, unpacked(more, options.look)?);
     let (still, more) = (still.as_ref(), more.as_ref());
     let mut poses: Vec<&File> = more.iter().collect();
     natural::sort(&mut poses);
@@ -179,7 +184,7 @@ pub fn open_more(still: &[File], more: &[File], options: &Options) -> Result<(Im
 }
 
 /// The files, with what is in archives in place of these.
-fn unpacked(files: &[File]) -> Result<Cow<'_, [File]>, ImportError> {
+fn unpacked(files: &[File], look: bool) -> Result<Cow<'_, [File]>, ImportError> {
     if !files.iter().any(|file| archive::is_zip(&file.bytes)) {
         return Ok(Cow::Borrowed(files));
     }
@@ -187,7 +192,7 @@ fn unpacked(files: &[File]) -> Result<Cow<'_, [File]>, ImportError> {
     let mut all = Vec::new();
     for file in files {
         if archive::is_zip(&file.bytes) {
-            let mut inside = archive::unpack(file, &mut budget).map_err(ImportError::on_one_line)?;
+            let mut inside = archive::unpack(file, look, &mut budget).map_err(ImportError::on_one_line)?;
             natural_order(&mut inside);
             all.extend(inside);
         } else {

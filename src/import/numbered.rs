@@ -82,7 +82,7 @@ pub fn open(files: &[(&File, Format)]) -> Result<Imported, ImportError> {
     if cut {
         sequence = sequence.with_polygons(polygons).map_err(wrong)?;
     }
-    Ok(Imported { sequence, clips: Vec::new(), clip: None, input_faces, warnings })
+    Ok(Imported { sequence, clips: Vec::new(), clip: None, input_faces, look: None, warnings })
 }
 
 fn read((file, format): &(&File, Format)) -> Result<PolygonMesh, ImportError> {

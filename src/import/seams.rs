@@ -10,13 +10,14 @@ use glam::DVec3;
 /// floats, well below anything modelled.
 const WELD_TOLERANCE: f64 = 1e-6;
 
-/// Joins vertices that agree in the reference and in every pose, and says so where there are `warnings`.
+/// Joins vertices that agree in the reference and in every pose, and says so where there are `warnings`. Returns for each
+/// old vertex its new number, if any were joined.
 pub fn weld_seams(
     faces: &mut [[u32; 3]],
     reference: &mut Vec<DVec3>,
     poses: &mut [Pose],
     warnings: Option<&mut Vec<Warning>>,
-) {
+) -> Option<Vec<u32>> {
     let stands = {
         let mut all: Vec<&[DVec3]> = vec![reference];
         all.extend(poses.iter().map(|pose| pose.positions.as_slice()));
@@ -25,20 +26,22 @@ pub fn weld_seams(
     let (kept, numbers) = compact(&stands);
     let gone = reference.len() - kept.len();
     if gone == 0 {
-        return;
+        return None;
     }
     let keep = |positions: &[DVec3]| -> Vec<DVec3> { kept.iter().map(|&v| positions[v as usize]).collect() };
     *reference = keep(reference);
     poses.iter_mut().for_each(|pose| pose.positions = keep(&pose.positions));
     faces.iter_mut().flatten().for_each(|v| *v = numbers[*v as usize]);
-    let Some(warnings) = warnings else { return };
-    warnings.push(Warning::new(
-        "welded",
-        format!(
-            "{} joined to another that is in the same place in every pose (seams of texture and normals).",
-            counted(gone, "vertex was", "vertices were")
-        ),
-    ));
+    if let Some(warnings) = warnings {
+        warnings.push(Warning::new(
+            "welded",
+            format!(
+                "{} joined to another that is in the same place in every pose (seams of texture and normals).",
+                counted(gone, "vertex was", "vertices were")
+            ),
+        ));
+    }
+    Some(numbers)
 }
 
 /// Removes faces of which two corners are one vertex. Returns the old numbers of those that stay, if any had to go.

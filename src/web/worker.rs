@@ -27,7 +27,7 @@ use crate::weights::Biharmonic;
 use crate::zoo::{self, Recipe};
 use glam::DVec3;
 use js_sys::{Array, Function, Object, Uint8Array, Uint32Array};
-use sequences::{describe, kept_sequence, parcel, rounded};
+use sequences::{describe, kept_sequence, look, parcel, rounded, written};
 use serde::Serialize;
 use values::{Reply, parsed, plain, put, read_files, sentence, single, triples};
 use wasm_bindgen::prelude::*;
@@ -157,15 +157,12 @@ impl Engine {
         Ok(Uint8Array::from(glb::parts(self.open_sequence()?, labels, &colours).as_slice()).into())
     }
 
-    /// What is open as a skin with a joint for each of the parts `labels` (#F): `{bytes, error, rms}` as
-    /// [`Engine::export_transfer`].
-    pub fn export_rigid(&self, labels: &[u32]) -> Reply {
-        let made = rigid::rigid(self.open_sequence()?, labels).map_err(sentence)?;
-        let reply: JsValue = Object::new().into();
-        put(&reply, "bytes", &Uint8Array::from(made.bytes.as_slice()))?;
-        put(&reply, "error", &made.largest.into())?;
-        put(&reply, "rms", &made.rms.into())?;
-        Ok(reply)
+    /// What is open as a skin with a joint for each of the parts `labels` (#F); `files`, `options` and the reply are those
+    /// of [`Engine::export_transfer`].
+    pub fn export_rigid(&self, labels: &[u32], files: &Array, options: JsValue) -> Reply {
+        let look = look(files, options)?;
+        let made = rigid::rigid(self.open_sequence()?, labels, look.as_ref()).map_err(sentence)?;
+        written(&made.bytes, [made.largest, made.rms], look.as_ref())
     }
 
     /// Cuts the merge tree, which is made first if there is none for these parameters.

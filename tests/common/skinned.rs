@@ -52,6 +52,7 @@ impl Made {
             weights: &self.weights,
             handles: self.handles,
             poses,
+            look: None,
         }
     }
 

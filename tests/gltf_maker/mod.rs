@@ -74,6 +74,44 @@ pub fn rich() -> Maker {
     maker
 }
 
+/// A picture of one pixel.
+pub const PNG: &[u8] = &[
+    0x89, b'P', b'N', b'G', 13, 10, 26, 10, 0, 0, 0, 13, b'I', b'H', b'D', b'R', 0, 0, 0, 1, 0, 0, 0, 1, 8, 0, 0, 0, 0,
+    0x3a, 0x7e, 0x9b, 0x55, 0, 0, 0, 10, b'I', b'D', b'A', b'T', 0x78, 0x9c, 0x63, 0x68, 0, 0, 0, 0x82, 0, 0x81, 0x77,
+    0xcd, 0x72, 0xb6, 0, 0, 0, 0, b'I', b'E', b'N', b'D', 0xae, 0x42, 0x60, 0x82,
+];
+
+/// A square of two triangles that have materials of their own, with a seam between them: one has a texture, the other
+/// that texture moved, and colours.
+pub fn dressed() -> Maker {
+    let mut maker = triangle();
+    let normals = f32s(&[0., 0., 1., 0., 0., 1., 0., 0., 1.]);
+    let first =
+        (maker.accessor(&normals, 5126, "VEC3", 3), maker.accessor(&f32s(&[0., 0., 1., 0., 0., 1.]), 5126, "VEC2", 3));
+    let positions = maker.accessor(&f32s(&[1., 0., 0., 1., 1., 0., 0., 1., 0.]), 5126, "VEC3", 3);
+    let second = (
+        maker.accessor(&normals, 5126, "VEC3", 3),
+        maker.accessor(&f32s(&[0.5, 0.5, 1., 1., 0., 0.5]), 5126, "VEC2", 3),
+    );
+    let colours = maker.accessor(&f32s(&[0.5, 0.25, 0., 1., 0., 0., 0., 0., 1.]), 5126, "VEC3", 3);
+    let picture = maker.view(PNG);
+    maker.json["meshes"][0]["primitives"] = json!([
+        { "material": 0, "attributes": { "POSITION": 0, "NORMAL": first.0, "TEXCOORD_0": first.1 } },
+        { "material": 1, "attributes": {
+            "POSITION": positions, "NORMAL": second.0, "TEXCOORD_0": second.1, "COLOR_0": colours } },
+    ]);
+    maker.json["materials"] = json!([
+        { "name": "skin", "pbrMetallicRoughness": { "baseColorTexture": { "index": 0 } } },
+        { "name": "cloth", "doubleSided": true, "emissiveTexture": {
+            "index": 0, "extensions": { "KHR_texture_transform": { "offset": [0.5, 0.0] } } } },
+    ]);
+    maker.json["textures"] = json!([{ "source": 0, "sampler": 0 }]);
+    maker.json["samplers"] = json!([{ "wrapS": 33071 }]);
+    maker.json["images"] = json!([{ "name": "picture", "mimeType": "image/png", "bufferView": picture }]);
+    maker.json["extensionsUsed"] = json!(["KHR_texture_transform"]);
+    maker
+}
+
 impl Maker {
     /// Appends bytes as a buffer view; returns its number.
     pub fn view(&mut self, bytes: &[u8]) -> usize {

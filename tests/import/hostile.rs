@@ -1,7 +1,7 @@
 //! Files that lie, are damaged, or were made to do harm.
 
 use super::dice::Dice;
-use super::gltf_maker::{Maker, draco_triangle, f32s, rich, triangle};
+use super::gltf_maker::{Maker, draco_triangle, dressed, f32s, rich, triangle};
 use super::{file, opens_or_says_why, refusal, unwelded};
 use proptest::prelude::*;
 use serde_json::json;
@@ -25,7 +25,7 @@ fn corpus() -> Vec<Vec<u8>> {
     let places = instances.accessor(&f32s(&[0., 0., 0., 7., 0., 0.]), 5126, "VEC3", 2);
     instances.json["nodes"][0]["extensions"] =
         json!({"EXT_mesh_gpu_instancing": {"attributes": {"TRANSLATION": places}}});
-    [rich(), meshopt, draco, sparse, instances].iter().map(Maker::glb).collect()
+    [rich(), meshopt, draco, sparse, instances, dressed()].iter().map(Maker::glb).collect()
 }
 
 /// Bytes changed, bits flipped, pieces cut out, doubled and swapped, numbers of the document replaced.

@@ -90,7 +90,7 @@ enum Outcome {
 fn compare(path: &Path, data: &Path) -> Outcome {
     let short = path.strip_prefix(data).unwrap().display().to_string();
     let files = with_neighbours(path);
-    let Ok(model) = Model::read(&files[0], &files, &mut Vec::new()) else { return Outcome::DoesNotMove };
+    let Ok(model) = Model::read(&files[0], &files, false, &mut Vec::new()) else { return Outcome::DoesNotMove };
     if model.clips().is_empty() {
         return Outcome::DoesNotMove;
     }
@@ -100,7 +100,7 @@ fn compare(path: &Path, data: &Path) -> Outcome {
     };
     let meta: serde_json::Value = serde_json::from_slice(&text).unwrap();
     let own = with_neighbours(&data.join(meta["file"].as_str().unwrap()));
-    let clips = Model::read(&own[0], &own, &mut Vec::new()).unwrap().clips();
+    let clips = Model::read(&own[0], &own, false, &mut Vec::new()).unwrap().clips();
     let lengths = |clips: &[Clip]| clips.iter().map(|c| (c.seconds * 1e3).round()).collect::<Vec<_>>();
     if lengths(&model.clips()) != lengths(&clips) {
         return Outcome::Without(format!("{short} (other clips than {})", meta["file"]));

@@ -9,8 +9,9 @@ mod skinned;
 use crate::harness::{Backend, Page, Screen};
 use glam::DVec3;
 use serde_json::{Value, json};
-use sinew::export::animation::{Influences, exact, light};
+use sinew::export::animation::{Influences, Skin, exact, light};
 use sinew::import::{File, Options, Sampling, open};
+use sinew::look::{Layer, Look};
 use skinned::Made;
 use std::path::PathBuf;
 use std::process::Command;
@@ -100,7 +101,7 @@ fn three_plays_the_exact_form() {
     let made = Made::new("horse", 2000, 8, 4);
     let mut page = three();
     let poses = made.sequence.poses();
-    let worst = play(&mut page, "exact.glb", exact(&made.sequence), &made, |pose| poses[pose].positions.clone());
+    let worst = play(&mut page, "exact.glb", exact(&made.sequence, None), &made, |pose| poses[pose].positions.clone());
     assert!(worst.into_iter().all(|worst| worst < 1e-5), "{worst:?}");
 }
 
@@ -118,11 +119,62 @@ fn three_plays_the_light_form() {
     }
 }
 
+/// A look of two materials, one of them with a texture of 2 × 2 squares.
+fn chequered(made: &Made) -> Look {
+    let (points, faces) = (made.sequence.reference(), made.sequence.faces());
+    let mut image = Vec::new();
+    let mut encoder = png::Encoder::new(&mut image, 2, 2);
+    encoder.set_color(png::ColorType::Grayscale);
+    let mut writer = encoder.write_header().expect("a picture");
+    writer.write_image_data(&[30, 220, 220, 30]).and_then(|()| writer.finish()).expect("a picture");
+    let document = json!({
+        "materials": [{ "pbrMetallicRoughness": { "baseColorTexture": { "index": 0 } } }, { "doubleSided": true }],
+        "textures": [{ "source": 0 }],
+        "images": [{ "mimeType": "image/png" }],
+    });
+    let numbers: Vec<u32> = (0..points.len() as u32).collect();
+    Look {
+        vertices: numbers.clone(),
+        shades: numbers,
+        faces: faces.to_vec(),
+        materials: (0..faces.len()).map(|f| Some(u32::from(2 * f > faces.len()))).collect(),
+        layers: vec![Layer {
+            name: "TEXCOORD_0".into(),
+            width: 2,
+            values: points.iter().flat_map(|p| [p.x as f32, p.y as f32]).collect(),
+        }],
+        document: document.as_object().expect("an object").clone(),
+        images: vec![image],
+    }
+}
+
+#[test]
+#[ignore = "needs three.js and Chromium: run by `cargo xtask test`"]
+fn three_shows_materials_and_textures() {
+    let made = Made::new("horse", 2000, 4, 8);
+    let look = chequered(&made);
+    let poses = made.poses();
+    let skin = Skin { look: Some(&look), ..made.skin(&poses) };
+    let mut page = three();
+    for (name, bytes) in [
+        ("chequered-exact.glb", exact(&made.sequence, Some(&look))),
+        ("chequered-light.glb", light(&skin, Influences::Four).expect("a skin").bytes),
+    ] {
+        expect_valid(name, &bytes);
+        page.evaluate(&format!("players.open('{name}').then((player) => void (window.player = player))"));
+        let shown =
+            page.evaluate("player.meshes.map(({ material }) => [material.map?.image.width ?? 0, material.side])");
+        assert_eq!(shown, json!([[2, 0], [0, 2]]), "three.js calls double-sided 2");
+        page.evaluate("players.draw(player, players.vertices(player, player.seconds / 3))");
+        page.picture_of("canvas", &name.replace('.', "-"));
+    }
+}
+
 #[test]
 #[ignore = "needs the Khronos validator: run by `cargo xtask test`"]
 fn the_validator_finds_nothing() {
     let made = Made::new("horse", 1500, 6, 11);
-    expect_valid("valid-exact.glb", &exact(&made.sequence));
+    expect_valid("valid-exact.glb", &exact(&made.sequence, None));
     let poses = made.poses();
     for influences in [Influences::Four, Influences::Eight] {
         let file = light(&made.skin(&poses), influences).expect("a skin");
@@ -134,7 +186,7 @@ fn the_validator_finds_nothing() {
     expect_valid("valid-many.glb", &light(&many.skin(&poses), Influences::Four).expect("a skin").bytes);
     expect_valid("valid-still.glb", &light(&made.skin(&[]), Influences::Four).expect("a skin").bytes);
     // The validator is awake.
-    let mut broken = exact(&made.sequence);
+    let mut broken = exact(&made.sequence, None);
     let length = broken.len();
     broken.truncate(length - 400);
     assert_ne!(validate("broken.glb", &broken)["numErrors"], json!(0));

@@ -1,7 +1,7 @@
 /** The step Export: what can be taken away, how large it is, and what it loses. */
 import { fold, select } from '../controls.js';
 import { h, icon, show } from '../dom.js';
-import { bytes, number } from '../format.js';
+import { bytes, number, plural } from '../format.js';
 import { lesson } from '../lesson.js';
 import { writeProject } from '../project.js';
 import { fileName, pairName, pairsFile, partsFile, pointsFile, reportFile, saveBlob, saveParts, savePicture, saveRigid, shownFigures } from '../save.js';
@@ -35,14 +35,14 @@ function build(app) {
     const { motion, files } = app.transfer;
     show(moving, ...(motion ? [
       ...FORMS.filter(([form]) => form === 'exact' || motion.handles).map(([form, name, about]) => item(name, detail(about, files.get(form)), () => saveForm(app, form), `export-${form}`)),
-      h('p', { class: 'small faint' }, 'Shape and motion alone: textures, and where they lie on a mesh, stay in the file that was opened.'),
+      look(app, files.values().next().value),
       item('Pairs', 'The key points of both as vertex numbers, JSON.', () => saveBlob(pairsFile(app), `${pairName(app)}-pairs.json`), 'export-pairs'),
       item('Report', 'Parameters, errors and times, JSON.', () => saveBlob(reportFile(app), `${pairName(app)}-report.json`), 'export-report'),
     ] : [h('p', { class: 'small faint' }, app.doc.target ? 'The target does not move yet: its points have no place.' : 'With a target that moves, it can be taken away here.')]));
   };
   show(still,
     item('Parts as GLB', 'The moving source with a material for each part.', () => saveParts(app), 'export-parts'),
-    item('Rigid skin', 'A joint for each part and every vertex on one of them, as engines like it. It says how far off that is.', () => saveRigid(app), 'export-rigid'),
+    item('Rigid skin', 'A joint for each part and every vertex on one of them, as engines like it; in its own materials. It says how far off that is.', () => saveRigid(app), 'export-rigid'),
     item('Parts as numbers', 'The part of each face, sizes and residuals, JSON.', () => app.result && saveBlob(partsFile(app), `${fileName(app)}-parts.json`), 'export-labels'),
     item('Key points', 'Vertices, errors and how they were chosen, JSON.', () => (app.doc.count ? saveBlob(pointsFile(app), `${fileName(app)}-points.json`) : app.say('There are no key points yet. The step Key points finds them.', 'news')), 'export-points'));
   const size = select('Picture size', SIZES.map(([name, pixels]) => [name, pixels ? `${name}, ${pixels.join(' × ')}` : name]), SIZES[0][0], () => {});
@@ -58,6 +58,16 @@ function build(app) {
   update();
   return h('div', { class: 'step' }, h('h2', {}, 'Export'), h('h3', {}, 'The target in motion'), moving, h('h3', {}, 'The source'), still, h('h3', {}, 'Pictures, and all of it'), pictures,
     fold('Which one to take', { load: () => lesson('export') }));
+}
+
+/** What the target looks like in its files. */
+function look({ doc }, file) {
+  const { kind, files = [] } = doc.target.source;
+  const gltf = kind === 'files' && files.some(({ name }) => /\.(glb|gltf|zip)$/i.test(name));
+  const words = file && file.images >= 0 ? `In its own materials${file.images ? ` and ${plural(file.images, 'texture')}` : ''}.`
+    : gltf ? (file ? 'Its file has no materials: it is of clay.' : 'In its own materials and textures.')
+      : 'Of clay: materials and textures are carried over from glTF.';
+  return h('p', { class: 'small faint' }, words);
 }
 
 function detail(about, file) {

@@ -53,9 +53,7 @@ impl Input {
         } else if let Some((_, poses)) = files.split_first_mut() {
             natural_order(poses);
         }
-        if let [document] = self.input.as_slice()
-            && document.extension().is_some_and(|end| end.eq_ignore_ascii_case("gltf"))
-        {
+        if let [document] = self.input.as_slice() {
             files.extend(beside(document)?);
         }
         let options = Options {
@@ -67,14 +65,17 @@ impl Input {
                 ReferenceArgument::First => Reference::FirstFrame,
             },
             weld: !self.no_weld,
+            ..Options::default()
         };
         Ok(open_in_order(&files, &options)?)
     }
 
-    /// Reads one more file as a mesh that stands still, its vertices numbered as those of the input are.
+    /// Reads one more file as a mesh that stands still, its vertices numbered as those of the input are; with its look.
     pub fn open_still(&self, path: &Path) -> Result<Imported, Refusal> {
-        let options = Options { weld: !self.no_weld, ..Options::default() };
-        let mut mesh = open_in_order(&[read(path)?], &options)?;
+        let options = Options { weld: !self.no_weld, look: true, ..Options::default() };
+        let mut files = vec![read(path)?];
+        files.extend(beside(path)?);
+        let mut mesh = open_in_order(&files, &options)?;
         // It stands still, as it should.
         mesh.warnings.retain(|warning| warning.code != "no-animation");
         Ok(mesh)
@@ -105,20 +106,23 @@ fn read_folder(folder: &Path, files: &mut Vec<File>) -> Result<(), Refusal> {
         // A link to a folder is not followed: it may lead back here.
         if entry.file_type().map_err(wrong)?.is_dir() {
             read_folder(&entry.path(), files)?;
-        } else if may_be_needed(&entry.path().display().to_string()) {
+        } else if may_be_needed(&entry.path().display().to_string(), false) {
             files.push(read(&entry.path())?);
         }
     }
     Ok(())
 }
 
-/// The buffers that a glTF names, as far as they are there: a missing one is the importer's to explain.
+/// The buffers and images that a glTF names, as far as they are there: a missing one is the importer's to explain.
 fn beside(document: &Path) -> Result<Vec<File>, Refusal> {
+    if !document.extension().is_some_and(|end| end.eq_ignore_ascii_case("gltf")) {
+        return Ok(Vec::new());
+    }
     let folder = document.parent().unwrap_or(Path::new(""));
     let bytes = read(document)?.bytes;
     let Ok(json) = serde_json::from_slice::<serde_json::Value>(&bytes) else { return Ok(Vec::new()) };
-    let buffers = json.get("buffers").and_then(|b| b.as_array()).into_iter().flatten();
-    let addresses = buffers.filter_map(|b| b.get("uri")?.as_str()).filter(|uri| !uri.starts_with("data:"));
+    let lists = ["buffers", "images"].into_iter().filter_map(|key| json.get(key)?.as_array());
+    let addresses = lists.flatten().filter_map(|b| b.get("uri")?.as_str()).filter(|uri| !uri.starts_with("data:"));
     let decoded = addresses.map(sinew::import::gltf::percent_decoded);
     Ok(decoded.filter_map(|name| read(&folder.join(name)).ok()).collect())
 }

@@ -11,7 +11,7 @@ use clap::{Args, ValueEnum};
 use glam::DVec3;
 use serde_json::{Map, Value, json};
 use sinew::clock;
-use sinew::export::skin::{Influences, Skin, SkinPose, light};
+use sinew::export::animation::{Influences, Skin, SkinPose, exact, light};
 use sinew::import::{File, Imported, natural_order};
 use sinew::mesh::ball::unit_ball;
 use sinew::observer::Silent;
@@ -117,9 +117,9 @@ impl Transfer {
         let mut added = None;
         if let Some(path) = &self.out {
             if self.light {
-                added = Some(write_light(path, &source.sequence, &target.sequence, &result)?);
+                added = Some(write_light(path, &source.sequence, &target, &result)?);
             } else {
-                output::write_glb(path, &moved, &vec![0; moved.faces().len()], &[])?;
+                output::write(path, exact(&moved, target.look.as_ref()))?;
             }
         }
         if let Some(path) = &self.report {
@@ -252,7 +252,8 @@ fn distances(found: &[DVec3], truth: &[DVec3], radius: f64) -> Vec<f64> {
 
 /// The moving target as a skin over its handles; the root mean square and the largest error that this form adds, over the
 /// diagonal.
-fn write_light(path: &Path, source: &Sequence, target: &Sequence, result: &Result_) -> Result<[f64; 2], Refusal> {
+fn write_light(path: &Path, source: &Sequence, target: &Imported, result: &Result_) -> Result<[f64; 2], Refusal> {
+    let Imported { sequence: target, look, .. } = target;
     let poses = source.poses().iter().zip(&result.skin.maps);
     let poses: Vec<SkinPose> = poses.map(|(pose, maps)| SkinPose { name: &pose.name, time: pose.time, maps }).collect();
     let skin = Skin {
@@ -262,6 +263,7 @@ fn write_light(path: &Path, source: &Sequence, target: &Sequence, result: &Resul
         weights: &result.skin.dense(),
         handles: result.skin.handles.len(),
         poses: &poses,
+        look: look.as_ref(),
     };
     let light = light(&skin, Influences::Four)?;
     output::write(path, &light.bytes)?;

@@ -5,7 +5,7 @@ use super::chain::{Link, is_single};
 use super::influences::Joints;
 use crate::export::animation::CLAY;
 use crate::export::container::{Writer, single};
-use crate::export::glb;
+use crate::export::cover::Cover;
 use glam::{DVec3, Mat4, Vec3};
 use serde_json::{Value, json};
 
@@ -43,8 +43,8 @@ pub fn write(skin: &Skin, tracks: &[Vec<Link>], centres: &[DVec3], joints: &[Joi
         document["skins"] = json!([{ "joints": bones, "skeleton": 1, "inverseBindMatrices": file.binds(&binds) }]);
         document["scenes"] = json!([{ "nodes": [0, 1] }]);
         document["nodes"] = json!(nodes);
-        document["meshes"] = json!([mesh(skin, joints, &mut file)]);
-        document["materials"] = json!([glb::material(0, &[CLAY], &[skin.name.to_owned()])]);
+        let primitives = primitives(skin, joints, &mut file, &mut document);
+        document["meshes"] = json!([{ "name": skin.name, "primitives": primitives }]);
         if !animation.channels.is_empty() {
             document["animations"] = json!([{
                 "name": skin.name,
@@ -57,12 +57,15 @@ pub fn write(skin: &Skin, tracks: &[Vec<Link>], centres: &[DVec3], joints: &[Joi
     file.finish(document)
 }
 
-fn mesh(skin: &Skin, joints: &[Joints], file: &mut Writer) -> Value {
-    let positions: Vec<Vec3> = skin.reference.iter().map(|&p| single(p)).collect();
-    let mut attributes = json!({
-        "POSITION": file.vectors(&positions),
-        "NORMAL": file.vectors(&glb::normals(skin.faces, skin.reference)),
-    });
+fn primitives(skin: &Skin, joints: &[Joints], file: &mut Writer, document: &mut Value) -> Value {
+    let cover = Cover::own(skin.look, skin.reference.len(), skin.faces, CLAY, skin.name);
+    let reference = cover.spread(skin.reference);
+    let positions: Vec<Vec3> = reference.iter().map(|&p| single(p)).collect();
+    let mut attributes = json!({ "POSITION": file.vectors(&positions) });
+    if let Some(normals) = cover.normals(&reference) {
+        attributes["NORMAL"] = json!(file.vectors(&normals));
+    }
+    let joints: Vec<&Joints> = cover.spread(&joints.iter().collect::<Vec<_>>());
     let sets = joints.first().map_or(1, |joints| joints.len() / 4);
     for set in 0..sets {
         let four = |joints: &Joints, k: usize| joints.get(4 * set + k).copied().unwrap_or_default();
@@ -71,11 +74,7 @@ fn mesh(skin: &Skin, joints: &[Joints], file: &mut Writer) -> Value {
         attributes[format!("JOINTS_{set}")] = json!(file.joints(&numbers, skin.handles));
         attributes[format!("WEIGHTS_{set}")] = json!(file.weights(&weights));
     }
-    let indices = file.indices(skin.faces);
-    json!({
-        "name": skin.name,
-        "primitives": [{ "attributes": attributes, "indices": indices, "material": 0, "mode": 4 }],
-    })
+    cover.write(file, document, attributes, &[])
 }
 
 /// Channels and samplers, growing together. Handles with keys at the same times share them.

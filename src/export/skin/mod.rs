@@ -10,6 +10,7 @@ mod document;
 mod influences;
 
 use super::timing;
+use crate::look::Look;
 use chain::Link;
 use glam::{DAffine3, DVec3};
 use influences::Joints;
@@ -32,6 +33,8 @@ pub struct Skin<'a> {
     pub handles: usize,
     /// The poses in the order of time.
     pub poses: &'a [SkinPose<'a>],
+    /// What the mesh looks like; in one colour where there is no look that fits it.
+    pub look: Option<&'a Look>,
 }
 
 /// Where the handles are in a pose.

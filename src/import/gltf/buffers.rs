@@ -9,6 +9,7 @@ use std::cell::OnceCell;
 
 /// The buffers of a document, each found or with the reason why not: a buffer that nothing needs may be missing.
 pub struct Buffers<'a> {
+    files: &'a [File],
     sources: Vec<Result<Cow<'a, [u8]>, ImportError>>,
     /// For each buffer view that is stored compressed its bytes, once they were asked for.
     decoded: Vec<OnceCell<Result<Vec<u8>, ImportError>>>,
@@ -33,9 +34,15 @@ impl<'a> Buffers<'a> {
             _ => Err(ImportError(format!("buffer {index} of {name} has no data; export it as one GLB"))),
         };
         Ok(Self {
+            files,
             sources: document.buffers.iter().enumerate().map(find).collect(),
             decoded: vec![OnceCell::new(); document.views.len()],
         })
+    }
+
+    /// The bytes at an address in the document called `name`.
+    pub fn beside(&self, name: &str, uri: &str) -> Result<Cow<'a, [u8]>, ImportError> {
+        locate(name, uri, self.files)
     }
 
     /// The bytes of a buffer view, decoded where it is stored compressed.

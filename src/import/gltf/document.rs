@@ -1,10 +1,11 @@
 //! The JSON document of a glTF file, read entry by entry.
 //!
 //! Each entry is read by itself, so that an error names the entry, and only what concerns geometry and motion is
-//! read, so that an odd material or texture does not keep anyone from their mesh. The entries are the types of
+//! read, so that an odd material or texture does not keep anyone from their mesh: these are kept as they are. The entries are the types of
 //! the `gltf` crate; nothing in them is checked yet: every index may be out of range.
 
 use super::extensions::{self, Extensions};
+use super::look::Materials;
 use crate::import::ImportError;
 use crate::warning::Warning;
 use gltf::json::{self, Accessor, Animation, Buffer, Mesh, Node, Scene, Skin, buffer};
@@ -24,6 +25,8 @@ pub struct Document {
     pub buffers: Vec<Buffer>,
     /// Extensions that concern the shape.
     pub extensions: Extensions,
+    /// Materials and textures.
+    pub materials: Materials,
     /// Meshes.
     pub meshes: Vec<Mesh>,
     /// Nodes.
@@ -67,6 +70,7 @@ impl Document {
         let nodes = take(&mut root, "nodes", name)?;
         let mut meshes = take(&mut root, "meshes", name)?;
         let extensions = Extensions::find(&views, &meshes, &nodes, name)?;
+        let materials = Materials::find(&mut root, &meshes);
         meshes.iter_mut().for_each(drop_materials);
         let mut scenes = take(&mut root, "scenes", name)?;
         scenes.iter_mut().filter_map(Value::as_object_mut).for_each(|scene| {
@@ -78,6 +82,7 @@ impl Document {
             animations: read_all(animations, "animation", name)?,
             buffers: read_all(take(&mut root, "buffers", name)?, "buffer", name)?,
             extensions,
+            materials,
             meshes: read_all(meshes, "mesh", name)?,
             nodes: read_all(nodes, "node", name)?,
             scene,

@@ -11,6 +11,7 @@ mod document;
 mod draco;
 mod extensions;
 mod instancing;
+mod look;
 pub mod meshopt;
 mod model;
 mod nodes;

@@ -10,8 +10,9 @@ use super::shape::{self, Shape};
 use super::skin::{self, Skin};
 use crate::import::limits::Budget;
 use crate::import::{Clip, File, ImportError};
+use crate::look::{Layer, Look};
 use crate::warning::Warning;
-use glam::{DAffine3, DVec3};
+use glam::{DAffine3, DVec3, Vec3};
 use std::collections::BTreeMap;
 use std::collections::btree_map::Entry;
 
@@ -28,6 +29,8 @@ pub struct Model {
     motions: Vec<Motion>,
     faces: Vec<[u32; 3]>,
     vertices: usize,
+    /// What the mesh looks like, and its normals, if that was asked for and it looks like something.
+    look: Option<(Look, Vec<Vec3>)>,
     pub(super) budget: Budget,
 }
 
@@ -36,21 +39,22 @@ pub struct Model {
 struct Instance {
     node: usize,
     shape: usize,
+    material: Option<u32>,
     skin: Option<usize>,
     /// Where it is in the node's frame.
     place: DAffine3,
 }
 
 impl Model {
-    /// Reads the glTF or GLB `file`; its buffers are looked for among `files`.
-    pub fn read(file: &File, files: &[File], warnings: &mut Vec<Warning>) -> Result<Self, ImportError> {
+    /// Reads the glTF or GLB `file`; its buffers are looked for among `files`. With `look`, also what the mesh looks like.
+    pub fn read(file: &File, files: &[File], look: bool, warnings: &mut Vec<Warning>) -> Result<Self, ImportError> {
         let container = container::split(&file.name, &file.bytes)?;
         let mut budget = Budget::new(&file.name);
         budget.take(entries(container.json), ENTRY, "the document")?;
         let document = Document::read(&file.name, container.json, warnings)?;
         let buffers = Buffers::find(&file.name, &document, container.binary, files, &mut budget)?;
         let nodes = Nodes::read(&document, warnings)?;
-        let mut reader = Reader { document: &document, buffers: &buffers, budget, warnings };
+        let mut reader = Reader { document: &document, buffers: &buffers, look, budget, warnings };
         let skins = (0..document.skins.len()).map(|s| Skin::read(&document, &buffers, s)).collect::<Result<_, _>>();
         let skins: Vec<Skin> = if shows_skin(&document, &nodes) { skins? } else { Vec::new() };
         let targets = (0..document.nodes.len()).map(|n| reader.target_count(n)).collect::<Result<Vec<_>, _>>()?;
@@ -71,9 +75,15 @@ impl Model {
             motions,
             faces: Vec::new(),
             vertices: 0,
+            look: None,
             budget,
         };
         model.join()?;
+        if look && !document.materials.is_empty() {
+            let (mut look, normals) = model.joined_look()?;
+            document.materials.put(&mut look, &document, &buffers, &mut model.budget, warnings);
+            model.look = Some((look, normals));
+        }
         Ok(model)
     }
 
@@ -85,6 +95,11 @@ impl Model {
     /// #F triples of vertex numbers, instance after instance in the order in which one walks the node tree.
     pub fn faces(&self) -> &[[u32; 3]] {
         &self.faces
+    }
+
+    /// What the mesh looks like and its normals (#V), as far as it has any; taken out.
+    pub(super) fn take_look(&mut self) -> Option<(Look, Vec<Vec3>)> {
+        self.look.take()
     }
 
     /// Number of vertices, all instances together.
@@ -188,6 +203,38 @@ impl Model {
         }
         Ok(())
     }
+
+    /// The look of all instances, without materials, and the normals (#V, or none).
+    fn joined_look(&mut self) -> Result<(Look, Vec<Vec3>), ImportError> {
+        // The faces with their materials; two numbers, and a normal, a vertex.
+        self.budget.take(self.faces.len() as u64, 20, "the look")?;
+        self.budget.take(self.vertices as u64, 20, "the look")?;
+        let mut look = Look { faces: self.faces.clone(), ..Look::default() };
+        let shapes = || self.instances.iter().map(|instance| &self.shapes[instance.shape]);
+        for layer in shapes().flat_map(|shape| &shape.layers) {
+            if look.layers.iter().all(|known| known.name != layer.name) {
+                self.budget.take(self.vertices as u64, 4 * layer.width as u64, "the look")?;
+                look.layers.push(Layer { values: Vec::with_capacity(layer.width * self.vertices), ..layer.clone() });
+            }
+        }
+        for joined in &mut look.layers {
+            joined.values.clear();
+            for shape in shapes() {
+                match shape.layers.iter().find(|layer| layer.name == joined.name) {
+                    Some(layer) => joined.values.extend(&layer.values),
+                    // White, where others have colours.
+                    None => joined.values.resize(joined.values.len() + joined.width * shape.positions.len(), 1.0),
+                }
+            }
+        }
+        for instance in &self.instances {
+            let faces = self.shapes[instance.shape].faces.len();
+            look.materials.extend(std::iter::repeat_n(instance.material, faces));
+        }
+        let all = shapes().all(|shape| !shape.normals.is_empty());
+        let normals = if all { shapes().flat_map(|shape| shape.normals.iter().copied()).collect() } else { Vec::new() };
+        Ok((look, normals))
+    }
 }
 
 impl Shape {
@@ -222,6 +269,7 @@ fn is_mirroring(joints: &[DAffine3]) -> bool {
 struct Reader<'a, 'w> {
     document: &'a Document,
     buffers: &'a Buffers<'a>,
+    look: bool,
     budget: Budget,
     warnings: &'w mut Vec<Warning>,
 }
@@ -291,14 +339,16 @@ impl Reader<'_, '_> {
                     Entry::Vacant(entry) => {
                         let primitive = (mesh, number);
                         let (document, buffers) = (self.document, self.buffers);
-                        let read = shape::read(document, buffers, primitive, joints, &mut self.budget, self.warnings)?;
+                        let wanted = (joints, self.look);
+                        let read = shape::read(document, buffers, primitive, wanted, &mut self.budget, self.warnings)?;
                         let first_free = shapes.len();
                         shapes.extend(read);
                         *entry.insert((shapes.len() > first_free).then_some(first_free))
                     }
                 };
                 if let Some(shape) = shape {
-                    instances.extend(places.iter().map(|&place| Instance { node, shape, skin, place }));
+                    let material = self.document.materials.of(mesh, number);
+                    instances.extend(places.iter().map(|&place| Instance { node, shape, material, skin, place }));
                 }
             }
         }

@@ -17,7 +17,7 @@ const PROBES: usize = 9;
 /// Reads a glTF or GLB as a sequence. Its buffers are looked for among `files`.
 pub fn open(file: &File, files: &[File], options: &Options) -> Result<Imported, ImportError> {
     let mut warnings = Vec::new();
-    let model = Model::read(file, files, &mut warnings)?;
+    let mut model = Model::read(file, files, options.look, &mut warnings)?;
     if model.faces().is_empty() {
         return Err(ImportError(format!(
             "{} shows no triangle mesh; Sinew needs one, with an animation if it is to move",
@@ -48,12 +48,20 @@ pub fn open(file: &File, files: &[File], options: &Options) -> Result<Imported, 
     let mut faces = model.faces().to_vec();
     let clips = model.clips();
     let name = model.name().to_owned();
+    let look = model.take_look();
     drop(model);
-    if options.weld {
-        weld_seams(&mut faces, &mut reference, &mut poses, Some(&mut warnings));
-    }
+    let vertices = reference.len() as u32;
+    let welded =
+        options.weld.then(|| weld_seams(&mut faces, &mut reference, &mut poses, Some(&mut warnings))).flatten();
+    let mut look = look.map(|(mut look, normals)| {
+        look.settle(welded.unwrap_or_else(|| (0..vertices).collect()), &normals);
+        look
+    });
     let input_faces = faces.len();
     let stay = drop_collapsed(&mut faces, &mut warnings);
+    if let (Some(look), Some(stay)) = (&mut look, &stay) {
+        look.keep_faces(stay);
+    }
     if faces.is_empty() {
         return Err(ImportError(format!(
             "all triangles of {name} are collapsed to a point or a line; export it again"
@@ -64,7 +72,7 @@ pub fn open(file: &File, files: &[File], options: &Options) -> Result<Imported, 
     if let Some(stay) = stay {
         sequence = sequence.with_polygons(stay).map_err(wrong)?;
     }
-    Ok(Imported { sequence, clips, clip, input_faces, warnings: at_most_a_few(warnings) })
+    Ok(Imported { sequence, clips, clip, input_faces, look, warnings: at_most_a_few(warnings) })
 }
 
 /// At most a few warnings of each kind, so that a strange file does not bury a person in them.

@@ -1,4 +1,4 @@
-//! The geometry of one primitive: positions, triangles, morph targets and the joints that its vertices follow.
+//! One primitive: positions, triangles, morph targets, the joints that its vertices follow, and where textures lie.
 //!
 //! Only the vertices that triangles use are read; many primitives may share one large array of vertices.
 
@@ -8,6 +8,7 @@ use super::document::Document;
 use super::draco::{self, Unpacked};
 use crate::import::limits::Budget;
 use crate::import::{ImportError, counted};
+use crate::look::Layer;
 use crate::warning::Warning;
 use glam::{DVec3, Vec3};
 use gltf::json::accessor::Type;
@@ -25,6 +26,10 @@ pub struct Shape {
     pub targets: Vec<Target>,
     /// Which joints the vertices follow; `None` without a skin.
     pub influences: Option<Influences>,
+    /// Coordinates of textures and colours, where the look is asked for.
+    pub layers: Vec<Layer>,
+    /// #V normals, where the look is asked for and the file has them.
+    pub normals: Vec<Vec3>,
 }
 
 /// A morph target: the vertices that it moves, and how far at weight 1.
@@ -45,20 +50,20 @@ pub struct Influences {
 
 /// Reads primitive `number` of mesh `mesh`; `None`, with a warning, for one that has no triangles.
 ///
-/// `joints` is the number of joints of the skin that it is bound to, if any.
+/// `joints` is the number of joints of the skin that it is bound to, if any; `look` asks for what textures need.
 pub fn read(
     document: &Document,
     buffers: &Buffers,
     (mesh, number): (usize, usize),
-    joints: Option<usize>,
+    (joints, look): (Option<usize>, bool),
     budget: &mut Budget,
     warnings: &mut Vec<Warning>,
 ) -> Result<Option<Shape>, ImportError> {
     let whose = document.mesh_name(mesh);
     let Some(primitive) = document.meshes.get(mesh).and_then(|m| m.primitives.get(number)) else { return Ok(None) };
-    let unpacked = unpack(document, buffers, (mesh, number), joints.is_some(), budget)?;
+    let unpacked = unpack(document, buffers, (mesh, number), (joints.is_some(), look), budget)?;
     let unpacked = unpacked.as_ref();
-    let mut reader = Reader { document, buffers, primitive, unpacked, whose: &whose, budget, left_over: 0 };
+    let mut reader = Reader { document, buffers, primitive, unpacked, whose: &whose, budget, look, left_over: 0 };
     let why = match primitive.mode {
         Checked::Invalid => "is of an unknown kind",
         Checked::Valid(Mode::Points | Mode::Lines | Mode::LineLoop | Mode::LineStrip) => "is made of points or lines",
@@ -87,12 +92,16 @@ fn unpack(
     document: &Document,
     buffers: &Buffers,
     (mesh, number): (usize, usize),
-    skinned: bool,
+    (skinned, look): (bool, bool),
     budget: &Budget,
 ) -> Result<Option<Unpacked>, ImportError> {
     let Some(entry) = document.extensions.draco.get(&(mesh, number)) else { return Ok(None) };
-    let wanted =
-        |name: &&str| *name == "POSITION" || skinned && (name.starts_with("JOINTS_") || name.starts_with("WEIGHTS_"));
+    let starts = |name: &str, heads: &[&str]| heads.iter().any(|head| name.starts_with(head));
+    let wanted = |name: &&str| {
+        *name == "POSITION"
+            || skinned && starts(name, &["JOINTS_", "WEIGHTS_"])
+            || look && starts(name, &["NORMAL", "TEXCOORD_", "COLOR_"])
+    };
     let wanted: Vec<&str> = entry.attributes.keys().map(String::as_str).filter(wanted).collect();
     let data = buffers.view(document, entry.buffer_view)?;
     draco::unpack(data, entry, &wanted, budget).map(Some).map_err(|what| {
@@ -111,6 +120,8 @@ struct Reader<'a> {
     /// Its mesh, for sentences.
     whose: &'a str,
     budget: &'a mut Budget,
+    /// Whether what textures need is read.
+    look: bool,
     /// Corners after the last whole triangle.
     left_over: usize,
 }
@@ -144,7 +155,42 @@ impl<'a> Reader<'a> {
                 Some(joints) => self.influences(joints, positions, &used)?,
                 None => None,
             },
+            layers: self.layers(positions.len(), &used),
+            normals: self.normals(positions.len(), &used),
         }))
+    }
+
+    /// Coordinates of textures, and colours. What is broken is left out, as if it were not there.
+    fn layers(&mut self, vertices: usize, used: &[u32]) -> Vec<Layer> {
+        let mut layers = Vec::new();
+        for set in 0.. {
+            let name = format!("TEXCOORD_{set}");
+            let Some(values) = self.look(Semantic::TexCoords(set), Type::Vec2, vertices, used) else { break };
+            layers.push(Layer { name, width: 2, values: values.iter().flat_map(|v| [v[0], v[1]]).collect() });
+        }
+        let mut colours = self.look(Semantic::Colors(0), Type::Vec4, vertices, used);
+        if colours.is_none() {
+            colours = self.look(Semantic::Colors(0), Type::Vec3, vertices, used);
+            colours.iter_mut().flatten().for_each(|colour| colour[3] = 1.0);
+        }
+        if let Some(colours) = colours {
+            let values = colours.iter().flatten().map(|x| x.clamp(0.0, 1.0)).collect();
+            layers.push(Layer { name: "COLOR_0".into(), width: 4, values });
+        }
+        layers
+    }
+
+    fn normals(&mut self, vertices: usize, used: &[u32]) -> Vec<Vec3> {
+        let normals = self.look(Semantic::Normals, Type::Vec3, vertices, used).unwrap_or_default();
+        normals.iter().map(|n| Vec3::from_slice(n).normalize_or_zero()).collect()
+    }
+
+    /// An attribute that only the look needs; numbers that it has not are 0.
+    fn look(&mut self, semantic: Semantic, shape: Type, vertices: usize, used: &[u32]) -> Option<Vec<[f32; 4]>> {
+        let values = self.attribute(semantic).ok().flatten().filter(|_| self.look)?;
+        values.expect_shape(shape).and_then(|()| values.expect_len(vertices, "")).ok()?;
+        self.budget.take(used.len() as u64, 16, self.whose).ok()?;
+        used.iter().map(|&v| values.numbers(v as usize).ok().map(|x| x.map(|x| x as f32))).collect()
     }
 
     fn attribute(&self, semantic: Semantic) -> Result<Option<Accessor<'a>>, ImportError> {

@@ -1,14 +1,14 @@
 //! Messages about the target in motion.
 
 use super::Engine;
-use super::sequences::moving;
+use super::sequences::{look, moving, written};
 use super::values::{Reply, parsed, plain, put, sentence};
 use super::watcher;
 use crate::export::animation;
 use crate::export::skin::{self, Influences, SkinPose};
 use crate::memory::Step;
 use crate::transfer::{Pair, Parameters, Prepared};
-use js_sys::{Float32Array, Function, Object, Uint8Array, Uint16Array};
+use js_sys::{Array, Float32Array, Function, Object, Uint16Array};
 use wasm_bindgen::prelude::*;
 
 /// The most handles that a vertex follows in the picture.
@@ -56,21 +56,22 @@ impl Engine {
         Ok(reply)
     }
 
-    /// The target in motion as a GLB: `{bytes, error, rms}`, with the largest and the mean square error that the form
-    /// adds, over the diagonal. `form` is `exact` or `light`.
-    pub fn export_transfer(&self, form: &str) -> Reply {
+    /// The target in motion as a GLB: `{bytes, error, rms, images}`, with the largest and the mean square error that the
+    /// form adds, over the diagonal. `form` is `exact` or `light`. `files` and `options` are what the target was opened
+    /// from, for it to look as it does there; without files it is of clay.
+    pub fn export_transfer(&self, form: &str, files: &Array, options: JsValue) -> Reply {
         let (source, target) = (self.open_sequence()?, self.open_target()?);
+        let look = look(files, options)?;
+        let look = look.as_ref();
         if let ("exact", Some(poses)) = (form, &self.faces_moved) {
-            let reply: JsValue = Object::new().into();
-            let bytes = animation::exact(&moving(source, target, poses.clone())?);
-            put(&reply, "bytes", &Uint8Array::from(bytes.as_slice()))?;
-            put(&reply, "error", &0.0_f64.into())?;
-            put(&reply, "rms", &0.0_f64.into())?;
-            return Ok(reply);
+            return written(&animation::exact(&moving(source, target, poses.clone())?, look), [0.0; 2], look);
         }
         let moved = self.moved.as_ref().ok_or_else(|| sentence("The target does not move yet."))?;
-        let (bytes, error, rms) = match form {
-            "exact" => (animation::exact(&moving(source, target, moved.poses(target.reference()))?), 0.0, 0.0),
+        match form {
+            "exact" => {
+                let moving = moving(source, target, moved.poses(target.reference()))?;
+                written(&animation::exact(&moving, look), [0.0; 2], look)
+            }
             "light" => {
                 let poses = source.poses().iter().zip(&moved.skin.maps);
                 let poses: Vec<SkinPose> =
@@ -83,16 +84,12 @@ impl Engine {
                     weights: &weights,
                     handles: moved.skin.handles.len(),
                     poses: &poses,
+                    look,
                 };
                 let light = skin::light(&skin, Influences::Four).map_err(sentence)?;
-                (light.bytes, light.largest, light.rms)
+                written(&light.bytes, [light.largest, light.rms], look)
             }
-            _ => return Err(sentence("The form must be exact or light.")),
-        };
-        let reply: JsValue = Object::new().into();
-        put(&reply, "bytes", &Uint8Array::from(bytes.as_slice()))?;
-        put(&reply, "error", &error.into())?;
-        put(&reply, "rms", &rms.into())?;
-        Ok(reply)
+            _ => Err(sentence("The form must be exact or light.")),
+        }
     }
 }

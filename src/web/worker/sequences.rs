@@ -1,12 +1,13 @@
 //! Sequences on their way to the page and back.
 
-use super::values::{Reply, coordinates, field, parsed, plain, points, put, sentence, triples};
-use crate::import::Clip;
+use super::values::{Reply, coordinates, field, parsed, plain, points, put, read_files, sentence, triples};
+use crate::import::{self, Clip, Options};
+use crate::look::Look;
 use crate::mesh::doctor::{Diagnosis, Finding};
 use crate::sequence::{Pose, Sequence, Sizes};
 use crate::warning::Warning;
 use glam::DVec3;
-use js_sys::{Array, Float32Array, Float64Array, Object, Uint32Array};
+use js_sys::{Array, Float32Array, Float64Array, Object, Uint8Array, Uint32Array};
 use serde::{Deserialize, Serialize};
 use wasm_bindgen::prelude::*;
 
@@ -131,4 +132,25 @@ pub fn moving(source: &Sequence, target: &Sequence, poses: Vec<Vec<DVec3>>) -> R
         .collect();
     Sequence::new(target.name().to_owned(), target.faces().to_vec(), target.reference().to_vec(), poses)
         .map_err(sentence)
+}
+
+/// What the mesh in `files` looks like, if they say it and can be read; `options` as they were when it was opened.
+pub fn look(files: &Array, options: JsValue) -> Result<Option<Look>, JsValue> {
+    if files.length() == 0 {
+        return Ok(None);
+    }
+    let options = Options { look: true, ..parsed(options)? };
+    // What cannot be read has no look; the mesh itself was read before.
+    Ok(import::open(&read_files(files)?, &options).ok().and_then(|imported| imported.look))
+}
+
+/// A file for the page: what it adds in error (largest and mean square, over the diagonal), and how many images it has;
+/// -1 for a mesh of clay.
+pub fn written(bytes: &[u8], [error, rms]: [f64; 2], look: Option<&Look>) -> Reply {
+    let reply: JsValue = Object::new().into();
+    put(&reply, "bytes", &Uint8Array::from(bytes))?;
+    put(&reply, "error", &error.into())?;
+    put(&reply, "rms", &rms.into())?;
+    put(&reply, "images", &look.map_or(-1.0, |look| look.images.len() as f64).into())?;
+    Ok(reply)
 }

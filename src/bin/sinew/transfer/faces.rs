@@ -5,6 +5,7 @@ use crate::Refusal;
 use crate::input::print_warnings;
 use crate::output::{self, counted, say};
 use serde_json::{Map, Value, json};
+use sinew::export::animation::exact;
 use sinew::import::Imported;
 use sinew::observer::Silent;
 use sinew::transfer::gradients::{Moved, Mover};
@@ -29,7 +30,7 @@ impl Transfer {
             write_poses(folder, &sequence)?;
         }
         if let Some(path) = &self.out {
-            output::write_glb(path, &sequence, &vec![0; sequence.faces().len()], &[])?;
+            output::write(path, exact(&sequence, target.look.as_ref()))?;
         }
         if let Some(path) = &self.report {
             output::write_report(path, &report(source, target, pairs, parameters, &result, errors.as_ref(), reading))?;
