@@ -1,7 +1,9 @@
 //! A reference pose and the poses that share its faces.
 
+use crate::mesh::backdrop::without_backdrop;
 use glam::DVec3;
 use serde::Serialize;
+use std::borrow::Cow;
 
 /// A triangle mesh in a reference pose, and the same mesh in other poses.
 ///
@@ -158,8 +160,31 @@ impl Sequence {
     /// Length of the diagonal of the reference pose's bounding box over the vertices that faces use; 0 for an
     /// empty mesh. The unit in which Sinew states residuals.
     pub fn diagonal(&self) -> f64 {
+        self.diagonal_of(&self.faces)
+    }
+
+    /// The faces without a still backdrop that is much larger than what moves ([`without_backdrop`]).
+    pub fn acting_faces(&self) -> Cow<'_, [[u32; 3]]> {
+        let poses: Vec<&[DVec3]> = self.poses.iter().map(|pose| pose.positions.as_slice()).collect();
+        without_backdrop(&self.faces, &self.reference, &poses)
+    }
+
+    /// The sequence with its [`Self::acting_faces`] alone and all of its vertices.
+    pub fn acting(&self) -> Cow<'_, Self> {
+        match self.acting_faces() {
+            Cow::Borrowed(_) => Cow::Borrowed(self),
+            Cow::Owned(faces) => Cow::Owned(Self { faces, polygons: None, ..self.clone() }),
+        }
+    }
+
+    /// [`Self::diagonal`] of the [`Self::acting_faces`]: the length against which the steps measure what moves.
+    pub fn acting_diagonal(&self) -> f64 {
+        self.diagonal_of(&self.acting_faces())
+    }
+
+    fn diagonal_of(&self, faces: &[[u32; 3]]) -> f64 {
         let (mut low, mut high) = (DVec3::INFINITY, DVec3::NEG_INFINITY);
-        for &v in self.faces.iter().flatten() {
+        for &v in faces.iter().flatten() {
             low = low.min(self.reference[v as usize]);
             high = high.max(self.reference[v as usize]);
         }

@@ -1,6 +1,8 @@
 //! Key points against ground truth, against the paper's letter, and on meshes as they are.
 #![cfg(not(target_arch = "wasm32"))]
 
+#[path = "common/floor.rs"]
+mod floor;
 #[path = "common/hinge.rs"]
 mod hinge;
 #[path = "common/npz.rs"]
@@ -188,6 +190,17 @@ fn last_error(sequence: &Sequence, parameters: Parameters) -> f64 {
 fn spread_over_seeds(sequence: &Sequence) -> f64 {
     let by_seed = |seed| last_error(sequence, Parameters { seed, ..Parameters::default() });
     spread(&(0..5).map(by_seed).collect::<Vec<_>>())
+}
+
+#[test]
+fn a_floor_changes_no_point() {
+    let horse = creature("horse", 1500);
+    let scene = floor::on_a_floor(&horse, 30.0);
+    let [alone, standing] = [&horse, &scene].map(|s| exactly(s, 6, Parameters::default()));
+    assert_eq!(alone.key_points, standing.key_points);
+    for (a, b) in alone.errors.iter().zip(&standing.errors) {
+        assert!((a - b).abs() < 1e-9, "{a} is not {b}");
+    }
 }
 
 #[test]

@@ -3,6 +3,8 @@
 
 #[path = "common/agreement.rs"]
 mod agreement;
+#[path = "common/floor.rs"]
+mod floor;
 #[path = "common/hinge.rs"]
 mod hinge;
 #[path = "common/npz.rs"]
@@ -192,6 +194,24 @@ fn plates_belong_to_the_limb_they_sit_on() {
         println!("{plates} plates: {} parts, residual {:.1e}", result.parts.len(), result.rigid_residual);
         assert_eq!(result.parts.len(), 5, "{plates} plates");
         assert!(result.rigid_residual < 1e-6);
+    }
+}
+
+/// What stands still around a character, however large, is a part of its own and changes nothing else.
+#[test]
+fn a_floor_leaves_the_parts_as_they_are() {
+    let dog = creature("dog", 3000, false).sequence;
+    let alone = by_default(&dog);
+    for half in [3.0, 100.0] {
+        let scene = floor::on_a_floor(&dog, half);
+        let result = by_default(&scene);
+        let (labels, below) = result.labels.split_at(dog.faces().len());
+        assert!(below.iter().all(|&l| l == below[0]) && !labels.contains(&below[0]), "the floor is one part");
+        let agreement = agreement(&dog, labels, &alone.labels);
+        println!("floor of {half}: {} parts, {agreement:.4}", result.parts.len());
+        assert!(agreement > 0.95, "{agreement}");
+        let units = scene.diagonal() / dog.diagonal();
+        assert!(result.rigid_residual * units < 1.1 * alone.rigid_residual, "stated in the diagonal of all");
     }
 }
 

@@ -1,6 +1,8 @@
 //! Transfer against ground truth, and on input as it is.
 #![cfg(not(target_arch = "wasm32"))]
 
+#[path = "common/floor.rs"]
+mod floor;
 #[path = "common/npz.rs"]
 mod npz;
 
@@ -243,6 +245,15 @@ fn which_way_faces_are_wound_does_not_matter() {
 }
 
 /// A bone of one vertex, or of vertices on a line, does not say how it turns; rounding must not say it instead.
+#[test]
+fn a_floor_under_the_source_changes_nothing() {
+    let (horse, camel) = (creature("horse", 2_000), creature("camel", 2_000));
+    let (scene, target) = (floor::on_a_floor(&horse.sequence, 30.0), still(&camel.sequence));
+    let pairs = pairs(&horse, &camel, 10);
+    let [alone, standing] = [&horse.sequence, &scene].map(|source| by_default(source, &target, &pairs));
+    assert_eq!(alone.poses(target.reference()), standing.poses(target.reference()));
+}
+
 #[test]
 fn bones_of_few_vertices_do_not_spin() {
     for (name, faces) in [("dog", 600), ("person", 900), ("octopus", 900)] {

@@ -40,7 +40,8 @@ pub struct Surface {
 impl Surface {
     /// Welds and scales a sequence.
     pub fn new(sequence: &Sequence) -> Self {
-        let ball = unit_ball(sequence.faces(), sequence.reference());
+        let faces = sequence.acting_faces();
+        let ball = unit_ball(&faces, sequence.reference());
         let scaled = |points: &[DVec3]| -> Vec<DVec3> {
             let place = |p: &DVec3| ((*p - ball.0) / ball.1).clamp(DVec3::splat(-FAR), DVec3::splat(FAR));
             points.iter().map(place).collect()
@@ -49,15 +50,15 @@ impl Surface {
         let poses: Vec<Vec<DVec3>> = sequence.poses().iter().map(|pose| scaled(&pose.positions)).collect();
         let all: Vec<&[DVec3]> = std::iter::once(&reference).chain(&poses).map(Vec::as_slice).collect();
         let (origin, number) = compact(&weld(&all, WELD));
-        let faces: Vec<[u32; 3]> = (sequence.faces().iter().map(|face| face.map(|v| number[v as usize])))
+        let welded: Vec<[u32; 3]> = (faces.iter().map(|face| face.map(|v| number[v as usize])))
             .filter(|&[a, b, c]| a != b && b != c && c != a)
             .collect();
         let mut seen = vec![false; number.len()];
-        sequence.faces().iter().flatten().for_each(|&v| seen[v as usize] = true);
+        faces.iter().flatten().for_each(|&v| seen[v as usize] = true);
         let mut counts = vec![0.0; origin.len()];
         number.iter().zip(&seen).filter(|(_, seen)| **seen).for_each(|(&n, _)| counts[n as usize] += 1.0);
         let kept = |points: &[DVec3]| origin.iter().map(|&v| points[v as usize]).collect();
-        Self::assemble(faces, kept(&reference), poses.iter().map(|p| kept(p)).collect(), counts, origin, number, ball)
+        Self::assemble(welded, kept(&reference), poses.iter().map(|p| kept(p)).collect(), counts, origin, number, ball)
     }
 
     /// From welded parts.

@@ -1,5 +1,6 @@
 //! What the algorithms need to know of a triangle mesh: adjacency, pieces, areas, welding; and what is wrong with it.
 
+pub mod backdrop;
 pub mod ball;
 pub mod bvh;
 pub mod doctor;

@@ -52,9 +52,9 @@ impl Geometry {
     }
 }
 
-/// What lengths are multiplied by: 1 over the diagonal of the reference pose, 1 where that is no number.
+/// What lengths are multiplied by: 1 over the diagonal of what moves in the reference pose, 1 where that is no number.
 pub fn unit_scale(sequence: &Sequence) -> f64 {
-    let scale = 1.0 / sequence.diagonal();
+    let scale = 1.0 / sequence.acting_diagonal();
     if scale.is_finite() { scale } else { 1.0 }
 }
 

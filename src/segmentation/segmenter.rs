@@ -53,6 +53,8 @@ pub struct Segmenter {
     weights: Vec<f64>,
     deformation: Vec<f64>,
     faces: FaceMotion,
+    /// The unit of the steps over the diagonal, in which results are stated: less than 1 where there is a backdrop.
+    unit: f64,
     finest: Finest,
     steps: Steps,
     warnings: Vec<Warning>,
@@ -128,7 +130,19 @@ impl Segmenter {
         };
         let warnings = warnings(sequence, gradients.degenerate());
         let parameters = parameters.clone();
-        Ok(Self { parameters, geometry, weights, deformation: distances, faces, finest, steps, warnings, seconds })
+        let unit = if sequence.diagonal() > 0.0 { sequence.acting_diagonal() / sequence.diagonal() } else { 1.0 };
+        Ok(Self {
+            parameters,
+            geometry,
+            weights,
+            deformation: distances,
+            faces,
+            unit,
+            finest,
+            steps,
+            warnings,
+            seconds,
+        })
     }
 
     /// #E pairs of neighbouring faces, and the weight (Eq. 5) of the dual edge between them.
@@ -169,8 +183,8 @@ impl Segmenter {
         let steps = Steps { unsmoothed, band, ..self.steps.clone() };
         Segmentation {
             parts: self.parts(&labels, count),
-            rigid_residual: self.residual(&labels, count),
-            residual_before_smoothing,
+            rigid_residual: self.unit * self.residual(&labels, count),
+            residual_before_smoothing: self.unit * residual_before_smoothing,
             labels,
             steps,
             warnings,
@@ -232,7 +246,7 @@ impl Segmenter {
             part.area += if total > 0.0 { area / total } else { 0.0 };
         }
         for (part, moments) in parts.iter_mut().zip(self.faces.moments(labels, count)) {
-            part.residual = rms(motion::residual(&moments), part.faces, self.faces.pose_count());
+            part.residual = self.unit * rms(motion::residual(&moments), part.faces, self.faces.pose_count());
         }
         parts
     }

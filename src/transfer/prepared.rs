@@ -93,6 +93,8 @@ impl Prepared {
         observer: &mut dyn Observer,
     ) -> Result<Self, TransferError> {
         let mut steps = Steps::new(observer);
+        let acting = source.acting();
+        let source = acting.as_ref();
         let surfaces = [(source, "source"), (target, "target")].map(|(sequence, side)| {
             let surface = Surface::new(sequence);
             if surface.faces.is_empty() { Err(TransferError::NoFaces { side }) } else { Ok(surface) }

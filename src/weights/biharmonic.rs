@@ -209,7 +209,9 @@ impl Biharmonic {
         places.iter().for_each(|&v| held[self.finest().surface.piece[v as usize] as usize] = true);
         let without = held.iter().filter(|held| !**held).count();
         if without > 0 {
-            let message = format!("{without} pieces without a handle follow the nearest piece that has one");
+            let (pieces, follow, have) =
+                if without == 1 { ("piece", "follows", "has") } else { ("pieces", "follow", "has") };
+            let message = format!("{without} {pieces} without a handle {follow} the nearest piece that {have} one");
             warnings.push(Warning::new("pieces-without-handle", message));
         }
         if residual > OPTIMAL {

@@ -99,6 +99,8 @@ impl Mover {
         observer: &mut dyn Observer,
     ) -> Result<Self, TransferError> {
         let mut steps = Steps::new(observer);
+        let acting = source.acting();
+        let source = acting.as_ref();
         let still = target.reference_alone();
         let [here, there] = [(source, "source"), (&still, "target")].map(|(sequence, side)| {
             let surface = Surface::new(sequence);

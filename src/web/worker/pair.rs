@@ -51,7 +51,7 @@ impl Engine {
         let (source, target) = (self.open_sequence()?, self.open_target()?);
         let proposer = match retained {
             Some(proposer) => proposer,
-            None => Proposer::new(source.faces(), source.reference(), target.faces(), target.reference())
+            None => Proposer::new(&source.acting_faces(), source.reference(), target.faces(), target.reference())
                 .map_err(sentence)?,
         };
         let known: Vec<Option<u32>> = known.iter().map(|&vertex| u32::try_from(vertex).ok()).collect();
