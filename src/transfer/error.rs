@@ -20,8 +20,10 @@ pub enum TransferError {
         /// The number of vertices there.
         vertices: usize,
     },
-    /// Two pairs name one point of the surface, and different twins.
-    #[error("pairs {first} and {second} name the same point of the {side} but different twins; leave one of them out")]
+    /// Two pairs name one point of one surface and different points of the other.
+    #[error(
+        "pairs {first} and {second} have one point of the {side} but different ones of the other mesh; leave one out"
+    )]
     SamePlace {
         /// The one, counted from 0.
         first: usize,

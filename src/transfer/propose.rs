@@ -166,7 +166,8 @@ impl Proposer {
             };
             Proposal { target, confidence: (-cost / 0.004).exp().clamp(0.0, 0.99) }
         };
-        let points: Vec<Proposal> = known.iter().enumerate().map(proposal).collect();
+        let mut points: Vec<Proposal> = known.iter().enumerate().map(proposal).collect();
+        self.part(&mut points, known);
         let unknown = (0..points.len()).filter(|&i| known[i].is_none());
         let next = unknown.min_by(|&a, &b| points[a].confidence.total_cmp(&points[b].confidence));
         Proposals { points, next }
@@ -174,6 +175,26 @@ impl Proposer {
 }
 
 impl Proposer {
+    /// Of points that came to one place of the target the surest stays, and the others go to the next places that are free,
+    /// where there are any: two points of one place move nothing.
+    fn part(&self, points: &mut [Proposal], known: &[Option<u32>]) {
+        let mut order: Vec<usize> = (0..points.len()).collect();
+        order.sort_by(|&a, &b| {
+            known[b].is_some().cmp(&known[a].is_some()).then(points[b].confidence.total_cmp(&points[a].confidence))
+        });
+        let place = |v: u32| self.target.points[v as usize];
+        let mut taken: Vec<DVec3> = Vec::with_capacity(points.len());
+        for i in order {
+            let at = points[i].target;
+            if known[i].is_none() && taken.contains(&place(at)) {
+                let far = |v: &u32| place(*v).distance_squared(place(at));
+                let free = self.target.around(self.target.cell[at as usize]).filter(|&v| !taken.contains(&place(v)));
+                points[i].target = free.min_by(|u, v| far(u).total_cmp(&far(v)).then(u.cmp(v))).unwrap_or(at);
+            }
+            taken.push(place(points[i].target));
+        }
+    }
+
     /// Of two opinions that differ little, the middle; of two that differ much, the second.
     fn between(&self, agreed: u32, settled: u32) -> u32 {
         let apart = self.target.points[agreed as usize].distance(self.target.points[settled as usize]);

@@ -252,9 +252,14 @@ fn coarse_graph(coarse: &[[u32; 3]], places: &[DVec3]) -> Graph {
     let mut links = edges(coarse, places);
     links.extend(across(coarse, places));
     let graph = Graph::new(places.len(), &links);
-    let bridges = bridges(&graph, places);
+    let piece = pieces(&graph);
+    let bridges = bridges(&piece, places);
     if bridges.is_empty() {
         return graph;
+    }
+    let spacing = links.iter().map(|link| link.2).sum::<f64>() / links.len().max(1) as f64;
+    for &(a, b, gap) in &bridges {
+        links.extend(contacts(&piece, [piece[a as usize], piece[b as usize]], gap + spacing, places));
     }
     links.extend(bridges);
     Graph::new(places.len(), &links)
@@ -291,12 +296,11 @@ fn across(coarse: &[[u32; 3]], places: &[DVec3]) -> Vec<(u32, u32, f64)> {
     links
 }
 
-/// Straight links that join the pieces of a graph into one, each time between the two nearest.
-fn bridges(graph: &Graph, places: &[DVec3]) -> Vec<(u32, u32, f64)> {
-    let n = graph.len();
-    let mut piece = vec![u32::MAX; n];
+/// For each node of a graph the number of its connected piece.
+fn pieces(graph: &Graph) -> Vec<u32> {
+    let mut piece = vec![u32::MAX; graph.len()];
     let mut count = 0;
-    for first in 0..n as u32 {
+    for first in 0..graph.len() as u32 {
         if piece[first as usize] != u32::MAX {
             continue;
         }
@@ -312,6 +316,25 @@ fn bridges(graph: &Graph, places: &[DVec3]) -> Vec<(u32, u32, f64)> {
         }
         count += 1;
     }
+    piece
+}
+
+/// Links between two pieces all along where they lie against each other, within `reach`: a shirt that hung on the trousers
+/// at one place would hang on them at another place of another figure.
+fn contacts(piece: &[u32], [p, q]: [u32; 2], reach: f64, places: &[DVec3]) -> Vec<(u32, u32, f64)> {
+    let of = |wanted: u32| (0..piece.len() as u32).filter(move |&s| piece[s as usize] == wanted);
+    let distance = |a: u32, b: u32| places[a as usize].distance(places[b as usize]);
+    let nearest = |a: u32, other: u32| {
+        let to = of(other).map(|b| (a, b, distance(a, b))).min_by(|x, y| x.2.total_cmp(&y.2));
+        to.filter(|link| link.2 <= reach)
+    };
+    of(p).filter_map(|a| nearest(a, q)).chain(of(q).filter_map(|b| nearest(b, p))).collect()
+}
+
+/// Straight links that join the pieces of a graph into one, each time between the two nearest.
+fn bridges(piece: &[u32], places: &[DVec3]) -> Vec<(u32, u32, f64)> {
+    let n = piece.len();
+    let count = piece.iter().max().map_or(0, |&last| last + 1);
     // Prim's spanning tree over the samples, where links within a piece are free.
     let mut best = vec![(f64::INFINITY, 0_u32); n];
     let mut inside = vec![false; count as usize];
