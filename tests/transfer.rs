@@ -254,6 +254,29 @@ fn a_floor_under_the_source_changes_nothing() {
     assert_eq!(alone.poses(target.reference()), standing.poses(target.reference()));
 }
 
+/// A figure that grows while it walks makes the other one grow as well, and walk as it would.
+#[test]
+fn growth_is_carried_over() {
+    let (horse, camel) = (creature("horse", 2_000), creature("camel", 2_000));
+    let (target, pairs) = (still(&camel.sequence), pairs(&horse, &camel, 12));
+    let size = |pose: usize| [0.5, 1.0, 1.3, 2.0][pose % 4];
+    let poses = horse
+        .sequence
+        .poses()
+        .iter()
+        .enumerate()
+        .map(|(i, pose)| Pose { positions: pose.positions.iter().map(|&p| size(i) * p).collect(), ..pose.clone() });
+    let (faces, reference) = (horse.sequence.faces().to_vec(), horse.sequence.reference().to_vec());
+    let growing = Sequence::new("growing", faces, reference, poses.collect()).expect("a sequence");
+    let [steady, grown] = [&horse.sequence, &growing].map(|source| by_default(source, &target, &pairs));
+    let truth = steady.poses(target.reference()).into_iter().enumerate();
+    let truth = truth.map(|(i, pose)| pose.into_iter().map(|p| size(i) * p).collect());
+    let truth: Vec<Pose> = truth.map(|positions| Pose { name: String::new(), time: 0.0, positions }).collect();
+    let off = error(&target, &grown.poses(target.reference()), &truth);
+    println!("growing: off by {off:.1e}");
+    assert!(off < 1e-3, "{off}");
+}
+
 #[test]
 fn bones_of_few_vertices_do_not_spin() {
     for (name, faces) in [("dog", 600), ("person", 900), ("octopus", 900)] {

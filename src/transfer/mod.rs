@@ -14,6 +14,7 @@ mod checked;
 pub mod correspondence;
 mod error;
 pub mod gradients;
+pub mod growth;
 pub mod joints;
 pub mod kd_tree;
 pub mod mend;

@@ -3,6 +3,7 @@
 use super::alignment::{Alignment, align};
 use super::biharmonic::{self, carried};
 use super::checked::checked;
+use super::growth::{grown, growth, shrunk};
 use super::joints::Joints;
 use super::mend;
 use super::registration::{Effort, Foot, Ground, LOST, Pin, Registration, feet};
@@ -39,6 +40,8 @@ pub struct Prepared {
     source: Surface,
     target: Surface,
     poses: Vec<Vec<DVec3>>,
+    /// How many times as large as at rest the source is in each pose; by bones, the poses are without that.
+    growths: Vec<f64>,
     rig: Rig,
     /// By how much edges of the target may become longer.
     allowed: f64,
@@ -101,7 +104,12 @@ impl Prepared {
         });
         let [here, there] = surfaces;
         let (here, there) = (here?, there?);
-        let poses: Vec<Vec<DVec3>> = source.poses().iter().map(|pose| here.unit(&pose.positions)).collect();
+        let mut poses: Vec<Vec<DVec3>> = source.poses().iter().map(|pose| here.unit(&pose.positions)).collect();
+        let mut growths = vec![1.0; poses.len()];
+        if !matches!(parameters.method, Method::Direct | Method::Relative) {
+            growths = poses.iter().map(|pose| growth(&here, pose)).collect();
+            poses = poses.into_iter().zip(&growths).map(|(pose, &growth)| shrunk(pose, growth)).collect();
+        }
         steps.end("surfaces", 0.1)?;
         let registration = Registration::new(&there).map_err(|_| TransferError::Degenerate { side: "target" })?;
         steps.end("systems", 0.3)?;
@@ -139,6 +147,7 @@ impl Prepared {
             source: here,
             target: there,
             poses,
+            growths,
             rig,
             allowed,
             ground,
@@ -178,7 +187,11 @@ impl Prepared {
         }
         let pose = self.source.unit(pose);
         Some(match carrier {
-            Carrier::Bones(joints) => self.outward(&joints.carry(&self.rig.follow(&self.source, &pose))),
+            Carrier::Bones(joints) => {
+                let growth = growth(&self.source, &pose);
+                let bones = self.rig.follow(&self.source, &shrunk(pose, growth));
+                self.carried(joints, &bones, growth)
+            }
             carrier => self.by_points(carrier, &pose),
         })
     }
@@ -263,8 +276,16 @@ impl Prepared {
         let seen: Vec<&[DAffine3]> = seen.iter().map(Vec::as_slice).collect();
         mend::close(&self.target, &mut rows, &seen, self.allowed, INFLUENCES);
         let joints = joints(&rows);
-        let maps = self.rig.maps.iter().map(|maps| self.outward(&joints.carry(maps))).collect();
+        let moments = self.rig.maps.iter().zip(&self.growths);
+        let maps = moments.map(|(maps, &growth)| self.carried(&joints, maps, growth)).collect();
         (self.skin(self.rig.bones, &rows, maps), joints)
+    }
+
+    /// The maps of the bones on the target, in its own units, of those on the source, which is so many times as large as at
+    /// rest.
+    fn carried(&self, joints: &Joints, maps: &[DAffine3], growth: f64) -> Vec<DAffine3> {
+        let there: Vec<DAffine3> = joints.carry(maps).iter().map(|map| grown(map, growth)).collect();
+        self.outward(&there)
     }
 
     /// The weights of the source at a place on it.
