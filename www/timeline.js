@@ -5,6 +5,8 @@ import { number } from './format.js';
 /** Poses a second where the files have no time. */
 const UNTIMED_RATE = 3;
 const SPEEDS = [0.25, 0.5, 1, 2];
+/** Dragging is finer, but a key goes to the next pose. */
+const ARROWS = { ArrowLeft: -1, ArrowDown: -1, ArrowRight: 1, ArrowUp: 1 };
 const CALM = matchMedia('(prefers-reduced-motion: reduce)');
 /** Beyond this many, ticks would be a grey bar. */
 const MOST_TICKS = 160;
@@ -90,8 +92,15 @@ export class Timeline {
         this.playing = false;
         this.seek(this.range.valueAsNumber);
       },
+      keydown: (event) => {
+        const by = ARROWS[event.key];
+        if (!by || event.ctrlKey || event.metaKey || event.altKey) return;
+        event.preventDefault();
+        this.step(by);
+      },
     } });
-    this.words = h('output', { class: 'number small faint time' });
+    // No live region: while it plays, a screen reader would never fall silent.
+    this.words = h('span', { class: 'number small faint time' });
     this.pick = h('select', { 'aria-label': 'Speed', class: 'small', on: { change: () => (this.speed = Number(this.pick.value)) } },
       ...SPEEDS.map((speed) => h('option', { value: speed, selected: speed === 1 }, `${number(speed)}×`)));
     this.still = h('button', { type: 'button', class: 'text-button small', title: 'Show the reference pose (R)', 'aria-pressed': 'false', on: { click: () => this.toggleReference() } }, 'Reference');
