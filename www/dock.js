@@ -50,6 +50,7 @@ export function dock(host, app) {
   const update = () => {
     const { hidden } = host;
     const step = stepNamed(app.step);
+    const held = legend.contains(document.activeElement);
     host.hidden = !step.views || (step.points ? !app.doc.count : !app.result);
     if (host.hidden) return;
     strip.update();
@@ -67,6 +68,8 @@ export function dock(host, app) {
     else if (said.kind === 'scalar') show(legend, scalarLegend(app, said));
     else if (said.kind === 'sets') show(legend, setLegend(said));
     else show(legend, h('p', { class: 'small' }, said.text));
+    // What was pressed may have had its last use.
+    if (held && !legend.contains(document.activeElement)) views.querySelector(':checked')?.focus();
   };
   app.on('view place step result doc points selected motion target rival', update);
   app.on('view step', reveal);

@@ -18,12 +18,24 @@ export function svg(tag, props = {}, ...children) {
   return fill(document.createElementNS(SVG, tag), props, children);
 }
 
-/** Replaces what is in `parent`. A control that had the focus and comes again (by its id) has it again. */
+/**
+ * Replaces what is in `parent`. A control that had the focus and comes again (by its id) has it again; if it does not,
+ * the nearest one before it has, or after it.
+ */
 export function show(parent, ...children) {
-  const focused = parent.contains(document.activeElement) ? document.activeElement.id : '';
+  const heirs = heirsOf(parent);
   parent.replaceChildren(...children.flat().filter((child) => child != null && child !== false));
-  if (focused) document.getElementById(focused)?.focus();
+  heirs.map((id) => document.getElementById(id)).find(Boolean)?.focus();
   return parent;
+}
+
+/** The ids of the controls that are to have the focus if it is in `parent`, the one that has it first. */
+function heirsOf(parent) {
+  const focused = document.activeElement;
+  if (!parent.contains(focused)) return [];
+  const named = [...parent.querySelectorAll(':is(button, input, select, a)[id]')];
+  const place = named.indexOf(focused);
+  return [...named.slice(0, place + 1).reverse(), ...named.slice(place + 1)].map(({ id }) => id);
 }
 
 const PROPERTIES = new Set(['value', 'checked', 'disabled', 'hidden', 'open', 'selected', 'htmlFor', 'indeterminate']);

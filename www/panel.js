@@ -9,6 +9,16 @@ export function panel(host, app, above) {
   show(host, close, above, ...bodies.values());
   const open = iconButton('panel', 'Show the panel (P)', () => app.setPanel(true), { class: 'icon-button panel-opener' });
   host.after(open);
+  for (const body of bodies.values()) body.querySelector('h2').tabIndex = -1;
+  // What has the focus may be hidden by what it does: then the focus would fall to the beginning of the page.
+  let focused = null;
+  document.addEventListener('focusin', ({ target }) => (focused = target));
+  document.addEventListener('focusout', ({ target }) => target.checkVisibility() && (focused = null));
+  const keepFocus = () => {
+    if (!focused || focused.checkVisibility()) return;
+    if (focused === open) close.focus();
+    else if (host.contains(focused)) (host.hidden ? open : bodies.get(app.step).querySelector('h2')).focus();
+  };
   let shown = app.step;
   const update = () => {
     for (const [id, body] of bodies) body.hidden = id !== app.step;
@@ -19,6 +29,7 @@ export function panel(host, app, above) {
     host.hidden = !app.panel;
     open.hidden = app.panel;
     document.documentElement.dataset.panel = app.panel ? 'open' : 'away';
+    keepFocus();
   };
   let figure = app.target.sequence;
   app.on('step panel', update);
@@ -27,5 +38,6 @@ export function panel(host, app, above) {
     if (app.target.sequence && figure !== app.target.sequence) host.scrollTop = 0;
     figure = app.target.sequence;
   });
+  app.on('doc', keepFocus);
   update();
 }
