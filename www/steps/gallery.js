@@ -25,22 +25,29 @@ const SIGHTS = [
   ['cloth', 'wave', 'A flag, which has no rigid parts'],
 ];
 
-/** @param {import('../app.js').App} app */
+/** All of it. @param {import('../app.js').App} app */
 export function gallery(app) {
-  const known = (...names) => names.every((name) => app.about.creatures.includes(name));
-  return h('div', { class: 'gallery' },
-    ...PAIRS.filter(([source, target]) => known(source, target)).map((pair) => pairCard(app, ...pair)),
-    ...SIGHTS.filter(([name]) => known(name)).map(sightCard));
+  return h('div', { class: 'gallery' }, ...pairCards(app, 'pair'),
+    ...SIGHTS.filter(([name]) => app.about.creatures.includes(name)).map(sightCard));
 }
 
-function pairCard(app, source, target, spoken) {
+/** The pairs alone. @param {import('../app.js').App} app */
+export const pairGallery = (app) => h('div', { class: 'gallery' }, ...pairCards(app, 'target-pair'));
+
+/** @param {string} kind what the ids of the cards begin with: the page has the pairs twice */
+function pairCards(app, kind) {
+  const known = (name) => app.about.creatures.includes(name);
+  return PAIRS.filter(([source, target]) => known(source) && known(target)).map((pair) => pairCard(app, kind, ...pair));
+}
+
+function pairCard(app, kind, source, target, spoken) {
   const open = (event) => {
     // With a key held down it is a link like any other.
     if (event.ctrlKey || event.metaKey || event.shiftKey) return;
     event.preventDefault();
     openPair(app, source, target);
   };
-  return h('a', { class: 'pair-card', id: `pair-${source}-${target}`, title: spoken, on: { click: open },
+  return h('a', { class: 'pair-card', id: `${kind}-${source}-${target}`, title: spoken, on: { click: open },
     href: `#v1;zoo=${source};step=transfer;target=${target};pairs=landmarks` },
     h('span', { class: 'pair-pictures' }, picture(source), picture(target)),
     h('span', { class: 'small' }, `${title(source)} → ${title(target)}`));

@@ -5,7 +5,7 @@ import { h, show } from '../dom.js';
 import { chosen } from '../files.js';
 import { count, title } from '../format.js';
 import { lesson } from '../lesson.js';
-import { gallery } from './gallery.js';
+import { pairGallery } from './gallery.js';
 import { pointList } from './point-list.js';
 import { PAIR_VIEWS } from './point-views.js';
 import { ACCEPT } from './source.js';
@@ -42,7 +42,7 @@ function build(app) {
     if (sequence) {
       show(now,
         h('div', { class: 'row' }, h('p', { class: 'name' }, nameOf(app.target)),
-          h('button', { type: 'button', class: 'text-button', on: { click: () => app.target.close() } }, 'Put away')),
+          h('button', { type: 'button', class: 'text-button', id: 'target-away', on: { click: () => app.target.close() } }, 'Put away')),
         facts([['Vertices', count(sequence.sizes.vertices)], ['Faces', count(sequence.sizes.faces)]]),
         ...warnings(app, untold(sequence.warnings).filter(({ code }) => code !== 'no-animation'), app.second));
     }
@@ -68,7 +68,7 @@ function build(app) {
     h('h3', {}, 'Creatures'), creatures,
     h('h3', {}, 'Your own'), fileButton(app),
     h('p', { class: 'small faint' }, 'Or drop it anywhere while this step is open.'),
-    h('h3', {}, 'Made for each other'), gallery(app),
+    h('h3', {}, 'Made for each other'), pairGallery(app),
     fold('How it works', { load: () => lesson('target') }));
 }
 
