@@ -16,6 +16,9 @@ export function pointers(stage, { point, hand }) {
   let asked = null;
   let grip = null;
   let dragged = null;
+  // In a frame, what goes up and down is the page around it, until the picture is taken in hand.
+  const framed = 'embed' in document.documentElement.dataset;
+  const inHand = () => document.hasFocus() && document.activeElement === stage.canvas;
 
   const place = (event) => {
     const box = stage.canvas.getBoundingClientRect();
@@ -97,11 +100,17 @@ export function pointers(stage, { point, hand }) {
   };
 
   const wheel = (event) => {
+    if (framed && !event.ctrlKey && !event.metaKey && !inHand()) return;
     event.preventDefault();
     const { x, y } = place(event);
     const lines = event.deltaMode === WheelEvent.DOM_DELTA_LINE ? 16 : 1;
     // A pinch on a touchpad arrives as a wheel with Control held, in much smaller numbers.
     stage.move('zoom', Math.exp(-event.deltaY * lines * WHEEL * (event.ctrlKey ? 6 : 1)), x, y);
+  };
+
+  /** Two fingers, or one on a pin, are for the picture; see `touch-action` in the styles. */
+  const touch = (event) => {
+    if (event.touches.length > 1 || grip) event.preventDefault();
   };
 
   const listen = () => {
@@ -113,6 +122,7 @@ export function pointers(stage, { point, hand }) {
     canvas.addEventListener('pointercancel', up);
     canvas.addEventListener('pointerleave', leave);
     canvas.addEventListener('wheel', wheel, { passive: false });
+    if (framed) canvas.addEventListener('touchstart', touch, { passive: false });
     canvas.addEventListener('contextmenu', (event) => event.preventDefault());
   };
   stage.addEventListener('canvas', listen);
