@@ -7,7 +7,7 @@ const idOf = (...words) => `control-${words.join('-').toLowerCase().replace(/[^a
 /**
  * A slider with its name, its value in words, the paper's range on the track, and a reset.
  * `change` hears the value when it is let go of, `input` while it moves.
- * @returns {{element: HTMLElement, set(value: number, text: string, changed: boolean): void}}
+ * @returns {{element: HTMLElement, disabled: boolean, set(value: number, text: string, changed: boolean): void}}
  */
 export function slider({ id: own, label, symbol = '', help, low, high, step, paper, reading, change, input, reset }) {
   const id = own ?? idOf(label);
@@ -36,6 +36,10 @@ export function slider({ id: own, label, symbol = '', help, low, high, step, pap
       range.valueAsNumber = number;
       value.textContent = text;
       back.hidden = !changed;
+    },
+    /** Whether it has nothing to act on. */
+    set disabled(disabled) {
+      range.disabled = disabled;
     },
     /** The element, at a value; for a slider that is made anew each time. */
     with(number) {

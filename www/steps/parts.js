@@ -85,14 +85,12 @@ const MOST_ROWS = 60;
 function partTable(app) {
   const { colours } = app;
   const { parts, labels } = app.result;
-  const row = (part, index) => h('tr', { tabindex: '0', on: {
-    pointerenter: () => highlight(app, labels, index),
+  const row = (part, index) => h('tr', { on: { pointerenter: () => highlight(app, labels, index), pointerleave: () => app.paint() } },
+  h('th', { scope: 'row' }, h('button', { type: 'button', class: 'part', 'aria-label': `Show part ${index + 1}`, on: {
+    click: () => highlight(app, labels, index),
     focus: () => highlight(app, labels, index),
-    pointerleave: () => app.paint(),
     blur: () => app.paint(),
-  } },
-  h('th', { scope: 'row' },
-    h('span', { class: 'chip', style: { 'background-color': `rgb(${colours.slice(3 * index, 3 * index + 3).join()})` } }), String(index + 1)),
+  } }, h('span', { class: 'chip', style: { 'background-color': `rgb(${colours.slice(3 * index, 3 * index + 3).join()})` } }), String(index + 1))),
   h('td', { class: 'number' }, percent(part.area)),
   h('td', { class: 'number' }, perMille(part.residual)));
   return h('div', {},
@@ -107,6 +105,9 @@ function highlight(app, labels, part) {
   labels.forEach((label, face) => label === part && faces.push(face));
   app.stage.mark(Uint32Array.from(faces), MARK.highlight);
 }
+
+/** Parameters that only the method of the paper asks for. */
+const OF_THE_PAPER = new Set(['gamma']);
 
 function parameterFold(app) {
   const sliders = SLIDERS.map((definition) => {
@@ -129,7 +130,11 @@ function parameterFold(app) {
       const chosen = parameters[definition.name];
       const value = chosen ?? (result ? definition.found(result) : null);
       const text = value == null ? 'auto' : reading(definition, value);
-      control.set(value ?? definition.low, chosen == null && value != null ? `${text} · auto` : text, definition.name in changes);
+      const idle = OF_THE_PAPER.has(definition.name) && parameters.method !== 'paper';
+      const words = chosen == null && value != null ? `${text} · auto` : text;
+      control.set(value ?? definition.low, idle ? 'not used' : words, !idle && definition.name in changes);
+      control.disabled = idle;
+      control.element.title = idle ? 'Only the paper’s own method asks for it.' : '';
     }
     method.querySelector(`[value="${parameters.method}"]`).checked = true;
     smoothing.querySelector('select').value = parameters.smoothing;
