@@ -36,7 +36,7 @@ function build(app) {
   const update = () => {
     const { transfer: { motion, method: name, pairs }, doc } = app;
     words.textContent = introduction(app);
-    go.hidden = Boolean(motion) || pairs.length > 0;
+    go.hidden = Boolean(motion) || pairs.length > 0 || !app.keypoints.hasMotion;
     go.textContent = doc.count ? 'Choose a target' : 'Find key points';
     variants.hidden = !doc.target || !doc.count;
     const chosen = method.querySelector(`[value="${name}"]`);
@@ -55,12 +55,14 @@ function build(app) {
 
 function introduction(app) {
   const { transfer, doc, target } = app;
-  if (!app.keypoints.hasMotion) return 'The source has a single pose: there is no motion to hand on.';
-  if (!doc.target) return 'Choose a target, and it moves like the source.';
-  if (!transfer.pairs.length) return 'Place a point on the target, and it begins to move.';
+  if (!app.keypoints.hasMotion) return 'The source stands still: there is no motion to hand on.';
+  const still = app.sequence.sizes.poses === 1;
+  if (!doc.target) return still ? 'The source stands still, in a single pose. Choose a target, and it takes that pose.' : 'Choose a target, and it moves like the source.';
+  if (!transfer.pairs.length) return still ? 'Place a point on the target, and it takes the pose of the source.' : 'Place a point on the target, and it begins to move.';
+  const does = still ? 'It takes the single pose of the source.' : 'It moves like the source.';
   const { proposed } = target.tally;
-  return proposed ? `It moves like the source. ${plural(proposed, 'point')} of it ${proposed === 1 ? 'is' : 'are'} only proposed.`
-    : 'It moves like the source. Drag a point on it, and the motion follows.';
+  return proposed ? `${does} ${plural(proposed, 'point')} of it ${proposed === 1 ? 'is' : 'are'} only proposed.`
+    : `${does} Drag a point on it, and ${still ? 'the pose' : 'the motion'} follows.`;
 }
 
 function motionFacts({ transfer: { motion }, target: { sequence }, sequence: source }) {
