@@ -22,17 +22,21 @@ export function handling(app, side, picture) {
     else app.target.place(index, vertex, mark);
   };
 
-  const pinAt = (x, y, touch) => {
-    if (!active()) return -1;
-    const found = picture().pickPin(x, y, touch ? FINGER : REACH);
-    return found === undefined ? -1 : pinsOf(app, side)[found]?.index ?? -1;
-  };
+  /** The place in the list of pins of the one that is pointed at; −1: none is. */
+  const pinAt = (x, y, touch) => (active() ? picture().pickPin(x, y, touch ? FINGER : REACH) ?? -1 : -1);
+  const pointOf = (pin) => pinsOf(app, side)[pin]?.index ?? -1;
+
+  /** The point behind the surface that was pressed on: a tap selects it, but in front of it is no place to drag it to. */
+  let behind = -1;
 
   return {
     /** Whether something here can be taken hold of; then what is done with it. */
     grab(x, y, touch) {
-      const index = pinAt(x, y, touch);
-      if (index < 0) return null;
+      const pin = pinAt(x, y, touch);
+      const index = pointOf(pin);
+      const hidden = index >= 0 && !picture().pinPositions()[pin]?.visible;
+      behind = hidden ? index : -1;
+      if (index < 0 || hidden) return null;
       app.select(index);
       if (!movable()) return { move() {}, drop() {} };
       const mark = `drag ${side} ${index} ${performance.now()}`;
@@ -58,6 +62,10 @@ export function handling(app, side, picture) {
 
     /** A click beside all pins. @returns {boolean} whether it did something */
     tap(x, y) {
+      if (behind >= 0) {
+        app.select(behind);
+        return true;
+      }
       if (side === 'source' && viewNow(app)?.faces) {
         const pick = picture().pick(x, y);
         if (pick) app.chooseFace(pick[0]);
@@ -65,7 +73,8 @@ export function handling(app, side, picture) {
       }
       if (side === 'source' && app.step === 'keypoints' && app.keypoints.adding) {
         const vertex = vertexAt(picture(), x, y);
-        if (vertex >= 0) app.keypoints.add(vertex);
+        if (vertex < 0) return true;
+        app.keypoints.add(vertex);
         app.keypoints.setAdding(false);
         return true;
       }
@@ -81,7 +90,7 @@ export function handling(app, side, picture) {
 
     /** What the pointer would do here. */
     cursor(x, y) {
-      const index = pinAt(x, y, false);
+      const index = pointOf(pinAt(x, y, false));
       app.hoverPoint(index);
       if (index >= 0) return 'pointer';
       const places = side === 'source' ? app.step === 'keypoints' && app.keypoints.adding : app.step === 'target' && app.target.wanted >= 0;
