@@ -46,16 +46,20 @@ function build(app) {
     item('Parts as numbers', 'The part of each face, sizes and residuals, JSON.', () => app.result && saveBlob(partsFile(app), `${fileName(app)}-parts.json`), 'export-labels'),
     item('Key points', 'Vertices, errors and how they were chosen, JSON.', () => (app.doc.count ? saveBlob(pointsFile(app), `${fileName(app)}-points.json`) : app.say('There are no key points yet. The step Key points finds them.', 'news')), 'export-points'));
   const size = select('Picture size', SIZES.map(([name, pixels]) => [name, pixels ? `${name}, ${pixels.join(' × ')}` : name]), SIZES[0][0], () => {});
+  const video = videoType() && item('Video', 'The motion from beginning to end, as it plays now and as large as it is shown.', () => saveVideo(app), 'export-video');
   const pictures = h('div', { class: 'stack' }, size,
     item('Picture', 'What is shown now, PNG.', () => savePicture(app, SIZES.find(([name]) => name === size.querySelector('select').value)[1]), 'export-picture'),
-    videoType() && item('Video', 'The motion from beginning to end, as it plays now and as large as it is shown.', () => saveVideo(app), 'export-video'),
+    video,
     item('Project', 'Everything as one file, to go on later or elsewhere.', () => saveProject(app), 'export-project'));
   app.on('motion', () => {
     update();
     if (app.step === 'export') measure(app);
   });
+  const offerVideo = () => video && (video.hidden = app.timeline.poses < 2);
   app.on('files target doc', update);
+  app.on('source', offerVideo);
   update();
+  offerVideo();
   return h('div', { class: 'step' }, h('h2', {}, 'Export'), h('h3', {}, 'The target in motion'), moving, h('h3', {}, 'The source'), still, h('h3', {}, 'Pictures, and all of it'), pictures,
     fold('Which one to take', { load: () => lesson('export') }));
 }
