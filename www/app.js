@@ -9,7 +9,7 @@
  */
 import { collect, fetchSource, originals, resting } from './files.js';
 import { plural } from './format.js';
-import { History } from './history.js';
+import { History, OPENING } from './history.js';
 import { KeyPoints, MOST_POINTS } from './keypoints.js';
 import { readProject } from './project.js';
 import { placeIn, viewNow } from './stages.js';
@@ -21,9 +21,18 @@ import { Work } from './work.js';
 
 /** A change of a parameter during a run that will take longer than this (seconds) stops the run. */
 const WORTH_STOPPING = 1;
+/** Figures that were open before the last one are held for undo up to this many bytes. */
+const MOST_HELD = 256 << 20;
+
+/**
+ * @typedef {object} Open
+ * @property {{kind: 'zoo', recipe: object}|{kind: 'files'|'src', files: {name: string, blob: Blob}[], options: object, url?: string}} source
+ * @property {object} sequence
+ */
 
 /**
  * @typedef {object} Doc what can be undone
+ * @property {Open|null} open the source
  * @property {object} changes parameters of the segmentation that differ from the engine's defaults
  * @property {number|null} wanted the number of parts that was asked for; null: the engine's own choice
  * @property {object} search parameters of the selection of key points that differ from the engine's defaults
@@ -35,7 +44,7 @@ const WORTH_STOPPING = 1;
  */
 
 /** @type {Doc} */
-const BLANK = { changes: {}, wanted: null, search: {}, run: null, points: [], count: 0, target: null, method: '' };
+const BLANK = { open: null, changes: {}, wanted: null, search: {}, run: null, points: [], count: 0, target: null, method: '' };
 
 export class App extends EventTarget {
   /**
@@ -59,9 +68,6 @@ export class App extends EventTarget {
     this.face = -1;
     /** A moment that a stage holds the source at, whatever the timeline says; null: none. */
     this.frozen = null;
-    /** @type {null|{kind: 'zoo', recipe: object}|{kind: 'files'|'src', files: {name: string, blob: Blob}[], options: object, url?: string}} */
-    this.source = null;
-    this.sequence = null;
     /** @type {History<Doc>} */
     this.history = new History(BLANK);
     this.result = null;
@@ -80,6 +86,8 @@ export class App extends EventTarget {
     /** Whether a point is held: nothing moves on its own meanwhile. */
     this.held = false;
     this.partsQueue = { running: false, next: undefined };
+    /** Whether the next opening is that of a link, which has begun with {@link reset}. */
+    this.linked = false;
     /** How many openings are under way; meanwhile the engine and the page may differ about what is open. */
     this.opening = 0;
     /** Counts segmentations. */
@@ -96,6 +104,8 @@ export class App extends EventTarget {
     this.keypoints = new KeyPoints(this);
     this.target = new Target(this);
     this.transfer = new Transfer(this);
+    // The picture may come after the parts, or come again.
+    stage.addEventListener('canvas', () => this.#takeColours());
   }
 
   changed(...what) {
@@ -112,6 +122,14 @@ export class App extends EventTarget {
 
   get doc() {
     return this.history.now;
+  }
+
+  get source() {
+    return this.doc.open?.source ?? null;
+  }
+
+  get sequence() {
+    return this.doc.open?.sequence ?? null;
   }
 
   get changes() {
@@ -156,34 +174,47 @@ export class App extends EventTarget {
 
   /** The page as a link has it, before something is opened. @param {Partial<Doc>} doc */
   reset(doc) {
-    this.amend({ ...BLANK, ...doc });
-    this.history.restart(this.doc);
+    this.history.rest();
+    this.edit({ ...BLANK, open: this.doc.open, ...doc }, OPENING);
+    this.linked = true;
   }
 
   undo() {
     const before = this.doc;
-    if (this.history.undo()) this.#return(before);
+    if (!this.opening && this.history.undo()) this.#return(before);
   }
 
   redo() {
     const before = this.doc;
-    if (this.history.redo()) this.#return(before);
+    if (!this.opening && this.history.redo()) this.#return(before);
+  }
+
+  /** Goes on from a state that was left. @param {Doc} doc */
+  takeUp(doc) {
+    const before = this.doc;
+    this.history.edit(doc);
+    this.#return(before);
   }
 
   #return(before) {
+    const { open, changes, wanted } = this.doc;
+    // The engine has to know it before anything is asked about it.
+    if (before.open !== open) this.engine.call('restore', { kept: open.sequence }, { own: true }).catch(() => {});
     this.#react(before);
-    const { changes, wanted } = this.doc;
-    if (before.changes !== changes) this.segment();
-    else if (before.wanted !== wanted) this.#cut();
+    if (before.open !== open || before.changes !== changes) this.segment();
+    else if (before.wanted !== wanted && this.result) this.#cut();
   }
 
   #react(before) {
     const { doc } = this;
+    const entered = before.open !== doc.open;
+    if (entered) this.#enter();
     this.selected = Math.min(this.selected, doc.count - 1);
     if (before.target !== doc.target) this.transfer.forget();
     this.target.react(before, doc);
     // The motion first: it is looked at, what the points weigh is read.
-    this.transfer.react(before, doc);
+    if (entered) this.transfer.move();
+    else this.transfer.react(before, doc);
     this.keypoints.react(before, doc);
     this.changed('doc', 'link');
     if (before.changes !== doc.changes) this.changed('parameters');
@@ -191,9 +222,10 @@ export class App extends EventTarget {
 
   // What is open.
 
-  openCreature(recipe) {
+  /** @param {object} recipe @param {{afresh?: boolean}} [how] `afresh`: without the points of the same creature */
+  openCreature(recipe, how) {
     const source = { kind: 'zoo', recipe: { ...this.about.recipe, ...recipe } };
-    return this.#open('zoo', source, async () => ({ recipe: source.recipe }));
+    return this.#open('zoo', source, async () => ({ recipe: source.recipe }), how);
   }
 
   /** @param {{name: string, blob: Blob}[]} files @param {object|null} options null: whatever the files are */
@@ -228,7 +260,7 @@ export class App extends EventTarget {
     return this.#open('open', source, () => collect(files, source.options));
   }
 
-  async #open(operation, source, payload) {
+  async #open(operation, source, payload, { afresh = false } = {}) {
     if (this.busy?.left > WORTH_STOPPING) this.engine.cancel({ all: true });
     this.opening++;
     const sequence = await this.work.run('source', operation === 'zoo' ? 'making the creature' : 'reading', async (progress) => {
@@ -241,23 +273,64 @@ export class App extends EventTarget {
     // From now on they are one drop, the mesh first.
     if (sequence.joined) source.files = [...resting(source.still), ...source.files];
     delete source.still;
-    this.engine.keep(sequence);
-    this.work.drop('points', 'search', 'pairs', 'motion', 'export');
-    Object.assign(this, { source, sequence, result: null, places: {}, face: -1, frozen: null, notice: null, selected: -1 });
     // Numbered shapes have no time of their own; a walk made by code closes on itself.
     sequence.timed = sequence.times.some((time, i) => time !== sequence.times[0] && i > 0);
     sequence.loop = source.kind === 'zoo' || !sequence.timed;
+    this.#replace({ source, sequence }, afresh);
+    if (sequence.joined) this.say(`${plural(sequence.sizes.poses, 'pose')} of the mesh that was open.`, 'news');
+    else this.#sayWhatWent();
+    await this.segment();
+    return true;
+  }
+
+  /** Puts what was opened in place of what was open. @param {Open} open */
+  #replace(open, afresh) {
+    const before = this.doc;
+    // A target stays: what is new is to move it as well. So do points in which there is work, where they mean the same.
+    const { changes, target, method } = before;
+    const patch = !afresh && this.keypoints.worked && sameMesh(this.sequence, open.sequence) ? { open, wanted: null, run: null }
+      : { ...BLANK, open, changes, search: this.keypoints.asked, target, method };
+    if (!this.linked) this.history.rest();
+    this.linked = false;
+    if (before.open) this.history.edit(patch, OPENING);
+    else this.history.restart({ ...BLANK, ...patch }, OPENING);
+    this.#makeRoom();
+    this.#react(before);
+  }
+
+  /** Shows the figure that is open from now on. */
+  #enter() {
+    const { sequence } = this;
+    this.engine.keep(sequence);
+    this.work.drop('points', 'search', 'pairs', 'motion', 'export');
+    Object.assign(this, { result: null, places: {}, face: -1, frozen: null, notice: null, selected: -1 });
     this.stage.describe(`${sequence.name}, ${sequence.sizes.faces} faces`);
     this.stage.open(sequence, sequence.loop && sequence.sizes.poses > 1);
-    // A target stays: what is new is to move it as well.
-    const { changes, search, target, method } = this.doc;
-    this.history.restart({ ...BLANK, changes, search, target, method });
     this.keypoints.forget();
     this.transfer.forget();
     this.changed('source', 'result', 'parameters', 'notice', 'doc', 'link');
-    if (sequence.joined) this.say(`${plural(sequence.sizes.poses, 'pose')} of the mesh that was open.`, 'news');
-    await this.segment();
-    return true;
+  }
+
+  /** Lets undo go back over the last figure, and over those before it as far as there is room. */
+  #makeRoom() {
+    const held = new Set([this.doc.open]);
+    let bytes = 0;
+    this.history.trim(({ open }) => {
+      if (!held.has(open)) bytes += open.sequence.poses.byteLength;
+      held.add(open);
+      return held.size <= 2 || bytes <= MOST_HELD;
+    });
+  }
+
+  /** Says what an opening took away, if that was the visitor's own, and that it is not lost. */
+  #sayWhatWent() {
+    const { open, points } = this.doc;
+    const back = this.history.past.at(-1);
+    if (!back) return;
+    const placed = back.points !== points && hasPlaced(back);
+    if (isOwn(back.open) && back.open.source.files !== open.source.files) {
+      this.say(`${back.open.sequence.name} was closed. Undo brings it back${placed ? ' with its points' : ''}.`, 'news');
+    } else if (placed) this.say('The points that were placed do not belong to this mesh. Undo brings them back.', 'news');
   }
 
   // Segmentation.
@@ -266,7 +339,7 @@ export class App extends EventTarget {
   async segment() {
     if (!this.sequence || this.opening) return;
     this.#giveWay();
-    const { wanted, parameters, changes } = this;
+    const { parameters, changes } = this;
     const run = ++this.runs;
     const result = await this.work.run('source', 'segmenting', (progress) =>
       this.engine.call('segment', { parameters }, { progress }));
@@ -278,7 +351,7 @@ export class App extends EventTarget {
     result.automatic = pickParts(result);
     result.curve = costCurve(result);
     this.result = result;
-    if (wanted != null && parameters.method === 'tree') await this.#fetchParts(wanted);
+    if (this.wanted != null && parameters.method === 'tree') await this.#fetchParts(this.wanted);
     this.#paintParts();
     if (this.#looksAtParts) this.stage.flowFrom(Uint32Array.from(result.features, ({ face }) => face));
     this.changed('result', 'link');
@@ -465,6 +538,13 @@ export class App extends EventTarget {
     if (!this.#looksAtParts) this.paint();
   }
 
+  /** Asks a new picture for the colours of what is there already. */
+  #takeColours() {
+    if (!this.result) return;
+    this.#paintParts();
+    this.changed('result', 'points');
+  }
+
   // Work and words.
 
   cancel() {
@@ -501,6 +581,19 @@ const owner = (step) => (stepNamed(step).views ? stepNamed(step) : stepNamed('pa
 const viewOf = (step, view) => stepNamed(step).views?.find(({ id }) => id === view) ?? PARTS_VIEW;
 
 const clamp = (value, low, high) => Math.min(Math.max(value, low), Math.max(low, high));
+
+/** Whether a figure was opened from files of the visitor's own. @param {Open|null} figure */
+const isOwn = (figure) => figure?.source.kind === 'files';
+
+/** Whether the source or the target is the visitor's own. @param {Doc} doc */
+export const hasOwn = ({ open, target }) => isOwn(open) || isOwn(target);
+
+/** Whether points have a place on the target that the visitor decided on. @param {Doc} doc */
+export const hasPlaced = ({ points }) => points.some(({ state, given }) => state === 'placed' && !given);
+
+/** Whether a vertex of one is the same vertex of the other. */
+const sameMesh = (a, b) => Boolean(a) && a.sizes.vertices === b.sizes.vertices && a.faces.length === b.faces.length
+  && a.faces.every((vertex, i) => vertex === b.faces[i]);
 
 /** An object without one of its fields. */
 function without(object, name) {

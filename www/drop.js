@@ -1,4 +1,5 @@
 /** Files dropped anywhere on the page. */
+import { hasOwn, hasPlaced } from './app.js';
 import { dropped } from './files.js';
 
 /** @param {HTMLElement} veil shown while something is dragged over the page */
@@ -35,9 +36,9 @@ export function drops(veil, app) {
 function saying(app, event) {
   const what = 'a file, several files or a folder';
   if (onTarget(app, event)) return `Drop the figure that is to move: ${what}`;
-  const points = app.doc.points.some(({ state }) => state === 'placed');
-  const lost = points ? ' The points that were placed go with the one that is open.' : '';
-  return app.target.sequence ? `Drop another figure to move like: ${what}.${lost}` : `Drop it: ${what}`;
+  const placed = hasPlaced(app.doc);
+  const back = placed || hasOwn(app.doc) ? `. Undo brings back what is open now${placed ? ', with its points' : ''}.` : '';
+  return `${app.target.sequence ? 'Drop another figure to move like' : 'Drop it'}: ${what}${back}`;
 }
 
 /** Whether what is dropped is to be the target: in its step, and on its picture. */

@@ -5,6 +5,9 @@
 
 const MOST = 200;
 
+/** The mark of all that belongs to one opening of a figure. */
+export const OPENING = 'opening';
+
 /** @template {object} State */
 export class History {
   /** @param {State} now */
@@ -44,9 +47,14 @@ export class History {
     this.mark = null;
   }
 
-  /** Forgets everything but a state that is in force from now on. @param {State} now */
-  restart(now) {
-    Object.assign(this, { now: Object.freeze(now), past: [], future: [], mark: null });
+  /** Forgets everything but a state that is in force from now on. @param {State} now @param {string|null} mark as of {@link edit} */
+  restart(now, mark = null) {
+    Object.assign(this, { now: Object.freeze(now), past: [], future: [], mark });
+  }
+
+  /** Forgets the newest state that is not worth its room, and all before it. @param {(state: State) => boolean} worth asked from the newest on */
+  trim(worth) {
+    this.past.splice(0, this.past.findLastIndex((state) => !worth(state)) + 1);
   }
 
   undo() {

@@ -15,6 +15,7 @@ export const MOST_POINTS = 60;
  * @property {number|null} target vertex
  * @property {'missing'|'none'|'proposed'|'placed'} state `none`: taken away by hand, so not to be proposed
  * @property {number} confidence of a proposal
+ * @property {boolean} [given] placed, but not by the visitor: it came with the creatures
  */
 
 /** @returns {Point} */
@@ -48,6 +49,19 @@ export class KeyPoints {
     return Boolean(run) && this.used.every(({ source }, i) => source === run.key_points[i]);
   }
 
+  /** Whether somebody worked on the points, so that they are not simply found again: on the source, or by a target. */
+  get worked() {
+    const { points, target } = this.app.doc;
+    return points.length > 0 && (Boolean(target) || !this.untouched);
+  }
+
+  /** What the next search is to find: as many points as are in use, unless a rule decides. */
+  get asked() {
+    const { search, run, count } = this.app.doc;
+    const known = run?.key_points.length ?? this.parameters.points ?? count;
+    return !count || count === known ? search : { ...search, points: count };
+  }
+
   /** The error with the points in use; undefined while it is not known. */
   get error() {
     const { run } = this.app.doc;
@@ -71,34 +85,68 @@ export class KeyPoints {
   /** Finds them if there are none. */
   begin() {
     const { app } = this;
-    const searching = app.work.jobs.some(({ lane }) => lane === 'search');
-    if (app.sequence && !app.opening && !app.doc.points.length && this.hasMotion && !searching) this.find();
+    if (app.sequence && !app.opening && !app.doc.points.length && this.hasMotion && !this.searching) this.find();
   }
 
-  /** Finds key points with the parameters in force. A step back goes to what was before the parameters changed. */
-  async find() {
+  /** Whether they are being looked for. */
+  get searching() {
+    return this.app.work.jobs.some(({ lane }) => lane === 'search');
+  }
+
+  /** Finds them anew in place of those that are there. */
+  again() {
+    this.app.edit({ search: { ...this.asked } });
+    return this.find();
+  }
+
+  /**
+   * Finds key points with the parameters in force. A step back goes to what was before the parameters changed.
+   * @param {{more?: boolean}} [how] `more`: those that are there stay, and others are added to them
+   */
+  async find({ more = false } = {}) {
     const { app } = this;
-    const { search } = app.doc;
+    const { search, open } = app.doc;
     const run = await app.work.run('search', 'finding key points', (progress) =>
       app.engine.call('keypoints', { parameters: this.parameters }, { progress }));
-    if (app.doc.search !== search) return;
+    if (app.doc.search !== search || app.doc.open !== open) return;
     if (!run) {
       if (app.doc.run) app.amend({ search: app.doc.run.search });
       return;
     }
     run.search = search;
     delete app.places.candidates;
-    const known = new Map(app.doc.points.map((point) => [point.source, point]));
-    const points = Array.from(run.key_points, (vertex) => known.get(vertex) ?? fresh(vertex));
-    // They are there a step back or on as well, unless others are: what was changed meanwhile is not about them.
     const { doc } = app;
-    app.amend({ run, points, count: points.length }, (state) => state.search === search && state.run === doc.run && state.points === doc.points);
+    const points = more ? this.#filled(run.key_points) : this.#knownOf(run.key_points);
+    // They are there a step back or on as well, unless others are: what was changed meanwhile is not about them.
+    app.amend({ run, points, count: points.length }, (state) =>
+      state.open === open && state.search === search && state.run === doc.run && state.points === doc.points);
+  }
+
+  /** Points at some vertices, with what is known of them. */
+  #knownOf(vertices) {
+    const known = new Map(this.app.doc.points.map((point) => [point.source, point]));
+    return Array.from(vertices, (vertex) => known.get(vertex) ?? fresh(vertex));
+  }
+
+  /** The points that are there, and after them those of `vertices` that are farthest from all before, until there are as many. */
+  #filled(vertices) {
+    const { points } = this.app.doc;
+    const { reference } = this.app.sequence;
+    const at = (vertex) => reference.subarray(3 * vertex, 3 * vertex + 3);
+    const chosen = points.map(({ source }) => source);
+    const free = Array.from(vertices, (vertex) => ({ vertex, away: Math.min(...chosen.map((other) => distance(at(vertex), at(other)))) }));
+    while (chosen.length < vertices.length) {
+      const farthest = free.reduce((best, each) => (each.away > best.away ? each : best));
+      chosen.push(farthest.vertex);
+      for (const each of free) each.away = Math.min(each.away, distance(at(each.vertex), at(farthest.vertex)));
+    }
+    return this.#knownOf(chosen);
   }
 
   /** @param {string} name of a parameter @param {any} value null: the engine's default */
   setParameter(name, value) {
     const { app } = this;
-    const { [name]: _, ...search } = app.doc.search;
+    const { [name]: _, ...search } = this.asked;
     if (value != null && value !== app.about.keypoints[name]) search[name] = value;
     // A bound or a rule takes the place of a number.
     if (name === 'error' || name === 'stop') search.points = null;
@@ -119,7 +167,10 @@ export class KeyPoints {
     return this.find();
   }
 
-  /** Uses more or fewer points; more than there are have to be found first. */
+  /**
+   * Uses more or fewer points; more than there are have to be found first. A search chooses points that are good together,
+   * so it may give up any; those that were worked on stay nevertheless.
+   */
   setCount(wanted) {
     const { app } = this;
     const count = Math.min(Math.max(1, wanted), MOST_POINTS);
@@ -129,7 +180,7 @@ export class KeyPoints {
       return undefined;
     }
     app.edit({ search: { ...app.doc.search, points: count } }, 'count');
-    return this.find();
+    return this.find({ more: this.worked });
   }
 
   /** Whether a vertex is a key point already. */
@@ -164,11 +215,8 @@ export class KeyPoints {
 
   /** Goes back to the points as they were found. */
   restore() {
-    const { app } = this;
-    const { run, points: now } = app.doc;
-    const known = new Map(now.map((point) => [point.source, point]));
-    const points = Array.from(run.key_points, (vertex) => known.get(vertex) ?? fresh(vertex));
-    app.edit({ points, count: points.length });
+    const points = this.#knownOf(this.app.doc.run.key_points);
+    this.app.edit({ points, count: points.length });
   }
 
   setAdding(on) {
@@ -176,11 +224,12 @@ export class KeyPoints {
     this.app.changed('selected');
   }
 
-  /** Another source: nothing of this holds any more. */
+  /** Another source: what follows from the points has to be found out anew. */
   forget() {
     this.fitted = null;
     this.adding = false;
     this.app.changed('points');
+    this.fit();
     if (stepNamed(this.app.step).points) queueMicrotask(() => this.begin());
   }
 
@@ -204,3 +253,5 @@ export class KeyPoints {
     app.paint();
   }
 }
+
+const distance = (a, b) => Math.hypot(a[0] - b[0], a[1] - b[1], a[2] - b[2]);

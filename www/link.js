@@ -15,6 +15,9 @@ const WRITE_EVERY = 400;
 /** The hash holds the creature's recipe under these names. */
 const RECIPE = ['faces', 'poses', 'exact', 'motion', 'size', 'build', 'head', 'neck', 'legs', 'arms', 'tail'];
 
+/** What is named by fields of a link, in words. */
+const CALLED = { zoo: 'a creature', target: 'a target', step: 'a step', motion: 'a motion' };
+
 /** @returns {Record<string, string>} empty if there is no state, or one of another version */
 export function readLink(hash = location.hash) {
   const [version, ...fields] = hash.replace(/^#/, '').split(';');
@@ -85,7 +88,7 @@ export function applyLink(fields, app) {
 }
 
 /** The recipe of the creature that a link names; null if it names none that exists. */
-export function recipeOf(fields, { creatures, recipe }, [key, prefix] = ['zoo', '']) {
+export function recipeOf(fields, { creatures, motions, recipe }, [key, prefix] = ['zoo', '']) {
   if (!creatures.includes(fields[key])) return null;
   const wanted = { name: fields[key] };
   for (const name of RECIPE) {
@@ -93,7 +96,16 @@ export function recipeOf(fields, { creatures, recipe }, [key, prefix] = ['zoo', 
     const value = typeof recipe[name] === 'string' ? text : parse(text);
     if (typeof value === typeof recipe[name]) wanted[name] = value;
   }
+  if (!motions[creatures.indexOf(wanted.name)].includes(wanted.motion)) delete wanted.motion;
   return wanted;
+}
+
+/** What a link names that is not known here, as a sentence; null if there is nothing. */
+export function unknownOf(fields, { creatures, motions }) {
+  const known = { zoo: creatures, target: creatures, step: STEPS.map(({ id }) => id), motion: motions[creatures.indexOf(fields.zoo)] };
+  const unknown = Object.entries(known).filter(([key, names]) => fields[key] && names && !names.includes(fields[key]));
+  if (!unknown.length) return null;
+  return `The link asks for what is not known here: ${unknown.map(([key]) => `${CALLED[key]} “${fields[key]}”`).join(', ')}. The rest of it is shown.`;
 }
 
 /** The import options that a link names. */

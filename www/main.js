@@ -1,5 +1,5 @@
 /** Puts the page together: engine, stage, controls; then opens what the address asks for, or the first creature. */
-import { App } from './app.js';
+import { App, hasOwn, hasPlaced } from './app.js';
 import { bench } from './bench.js';
 import { beside } from './beside.js';
 import { dock } from './dock.js';
@@ -10,7 +10,7 @@ import { chosen } from './files.js';
 import { handling } from './handling.js';
 import { keys } from './keys.js';
 import { goToPoints } from './link-points.js';
-import { applyLink, followState, optionsOf, placeOf, readLink, recipeOf, tourOf } from './link.js';
+import { applyLink, followState, optionsOf, placeOf, readLink, recipeOf, tourOf, unknownOf } from './link.js';
 import { keepOffline } from './offline.js';
 import { notices } from './notice.js';
 import { overlay } from './overlay.js';
@@ -89,6 +89,8 @@ show(element('tools'), undo, redo,
   iconButton('frame', 'All of it in the picture (F)', () => stage.move('frame')),
   iconButton('sun', 'Light or dark', turnTheme),
   iconButton('keys', 'Keys (?)', showKeys, { class: 'icon-button roomy' }));
+// What was placed by hand on figures of one's own is nowhere else.
+window.addEventListener('beforeunload', (event) => hasOwn(app.doc) && hasPlaced(app.doc) && event.preventDefault());
 app.on('doc', showReturns);
 showReturns();
 
@@ -137,12 +139,13 @@ async function start() {
 function openAddress() {
   const fields = readLink();
   const tour = tourOf(fields);
+  const unknown = unknownOf(fields, app.about);
   const opened = tour && !fields.zoo ? beginTour(fields, tour) : enter(fields, () => {
     const address = query.get('src');
     return address ? openOr(address, optionsOf(fields, app.about)) : app.openCreature(recipeOf(fields, app.about) ?? {});
   });
   if (tour && fields.zoo) app.guide.resume(...tour);
-  opened.catch((error) => app.say(error.message));
+  opened.then(() => unknown && app.notice?.kind !== 'error' && app.say(unknown, 'news')).catch((error) => app.say(error.message));
 }
 
 /** Puts the state of a link into the page and opens its source with `open`. @param {object} [own] target of the visitor's own */
@@ -150,14 +153,16 @@ function enter(fields, open, own) {
   const place = placeOf(fields);
   applyLink(fields, app);
   app.setPanel(fields.panel !== 'away' && !NARROW.matches && !embedded);
-  app.addEventListener('source', () => goTo(place, recipeOf(fields, app.about, ['target', 'target.']), own), { once: true });
-  return open();
+  const arrive = () => goTo(place, recipeOf(fields, app.about, ['target', 'target.']), own);
+  app.addEventListener('source', arrive, { once: true });
+  return open().finally(() => app.removeEventListener('source', arrive));
 }
 
 async function beginTour(fields, [id, stop]) {
+  const left = app.doc;
   applyLink(fields, app);
   app.setPanel(!embedded);
-  if (!(await app.guide.begin(id, stop))) await app.openCreature({});
+  if (!(await app.guide.begin(id, stop, left))) await app.openCreature({});
 }
 
 /** Opens a file that is a whole project. */
@@ -185,7 +190,8 @@ function goTo({ parts, time, reference, camera, points, at, face }, target, own)
   if (camera) stage.camera = camera;
   // Points are placed more easily on what stands still.
   if (reference || (app.step === 'target' && time === undefined)) timeline.toggleReference();
-  if (time !== undefined) {
+  // A moment that there is not is none to stop at.
+  if (time <= timeline.end) {
     timeline.setPlaying(false);
     timeline.seek(time);
   }

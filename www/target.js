@@ -1,5 +1,6 @@
 /** The target: the second figure, and where the key points lie on it. */
 import { collect } from './files.js';
+import { OPENING } from './history.js';
 import { fresh } from './keypoints.js';
 import { latest } from './work.js';
 
@@ -51,7 +52,8 @@ export class Target {
     this.known = sequence;
     app.engine.keepTarget(sequence);
     const points = places?.(sequence.sizes.vertices) ?? app.doc.points.map(({ source: vertex }) => fresh(vertex));
-    app.edit({ target: { source, sequence }, points, ...(places && { count: points.length, run: null }) });
+    // Places that are known come with the source.
+    app.edit({ target: { source, sequence }, points, ...(places && { count: points.length, run: null }) }, places ? OPENING : null);
     return true;
   }
 
@@ -62,7 +64,7 @@ export class Target {
   async openPair(source, target) {
     const recipes = [source, target].map((name) => ({ ...this.app.about.recipe, name }));
     const pairs = await this.#pairs(...recipes);
-    if (pairs && (await this.app.openCreature(recipes[0]))) await this.#openWith(recipes[1], pairs);
+    if (pairs && (await this.app.openCreature(recipes[0], { afresh: true }))) await this.#openWith(recipes[1], pairs);
   }
 
   /** Opens a creature beside the one that is open, with the true pairs between them. */
@@ -78,7 +80,7 @@ export class Target {
 
   #openWith(recipe, pairs) {
     return this.openCreature(recipe, () => Array.from(pairs.source, (vertex, i) =>
-      Object.freeze({ source: vertex, target: pairs.target[i], state: 'placed', confidence: 1 })));
+      Object.freeze({ source: vertex, target: pairs.target[i], state: 'placed', confidence: 1, given: true })));
   }
 
   close() {
@@ -107,7 +109,7 @@ export class Target {
     const { points } = app.doc;
     if (!points[index]) return;
     if (points.some(({ target, state }, i) => i !== index && state === 'placed' && target === vertex)) return;
-    app.edit({ points: points.with(index, Object.freeze({ ...points[index], target: vertex, state: 'placed', confidence: 1 })) }, mark);
+    app.edit({ points: points.with(index, Object.freeze({ source: points[index].source, target: vertex, state: 'placed', confidence: 1 })) }, mark);
   }
 
   /** Takes a point away from the target. */

@@ -1,4 +1,5 @@
 /** A guided tour as one takes it: the card over the panel, and the list of tours. */
+import { hasOwn } from './app.js';
 import { h, show } from './dom.js';
 import { countOf, viewNow } from './stages.js';
 import { METHODS } from './steps/methods.js';
@@ -16,22 +17,29 @@ export class Guide {
     this.tour = null;
     this.stop = 0;
     this.going = 0;
+    /** Where the visitor was with files of their own; null: there were none. @type {{doc: import('./app.js').Doc, step: string, views: object}|null} */
+    this.left = null;
+    /** The figures of the tour, as they are being opened. */
+    this.opened = Promise.resolve();
   }
 
-  /** Begins a tour at a stop, on its own figure. */
-  async begin(id, stop = 0) {
+  /** Begins a tour at a stop, on its own figure. @param {import('./app.js').Doc} [left] what it takes the place of */
+  async begin(id, stop = 0, left = this.app.doc) {
     const { app } = this;
     const tour = tourNamed(id);
     if (!tour) return false;
     const { zoo, target, faces } = tour.open;
+    if (hasOwn(left)) this.left = { doc: left, step: app.step, views: app.views };
     this.tour = tour;
     this.stop = Math.min(Math.max(0, stop), tour.stops.length - 1);
     app.setLessons(true);
     app.changed('tour');
     const turn = ++this.going;
-    if (target) await app.target.openPair(zoo, target);
-    else if (!(await app.openCreature({ name: zoo, ...(faces && { faces }) }))) return false;
-    if (turn === this.going) this.#arrive();
+    this.opened = target ? app.target.openPair(zoo, target) : app.openCreature({ name: zoo, ...(faces && { faces }) }, { afresh: true });
+    if ((await this.opened) === false) return false;
+    if (turn !== this.going) return true;
+    if (this.left) app.say('What you had open is there again when you leave the tour.', 'news');
+    this.#arrive();
     return true;
   }
 
@@ -49,9 +57,18 @@ export class Guide {
     this.#arrive();
   }
 
-  leave() {
-    this.tour = null;
-    this.app.changed('tour', 'link');
+  /** Ends the tour, and goes back to the visitor's own files unless others are open by now. */
+  async leave() {
+    const { app, left } = this;
+    this.going++;
+    Object.assign(this, { tour: null, left: null });
+    app.changed('tour', 'link');
+    if (!left) return;
+    await this.opened;
+    if (hasOwn(app.doc)) return;
+    app.views = left.views;
+    app.takeUp(left.doc);
+    app.setStep(left.step);
   }
 
   /** Shows what the stop is about. */

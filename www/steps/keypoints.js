@@ -43,7 +43,7 @@ function build(app) {
     const { doc, keypoints } = app;
     const none = !doc.count;
     words.textContent = introduction(app);
-    find.hidden = !none || !keypoints.hasMotion;
+    find.hidden = !none || !keypoints.hasMotion || keypoints.searching;
     for (const box of [numbers, curve, list]) box.hidden = none;
     if (none) return;
     show(numbers, pointFacts(app));
@@ -60,8 +60,8 @@ function build(app) {
 }
 
 function introduction(app) {
-  if (!app.keypoints.hasMotion) return 'It has a single pose. Key points are found from how a thing moves.';
-  if (app.work.jobs.some(({ lane }) => lane === 'search')) return 'Looking for the few points that carry the whole motion …';
+  if (!app.keypoints.hasMotion) return 'This one stands still. Key points are found from how a thing moves.';
+  if (app.keypoints.searching) return 'Looking for the few points that carry the whole motion …';
   return app.doc.count ? 'A few points whose motion carries all the rest. Drag one along the surface to move it.'
     : 'A few points whose motion carries all the rest.';
 }
@@ -112,7 +112,7 @@ function listSection(app) {
     click: () => app.keypoints.setAdding(!app.keypoints.adding),
   } }, 'Add a point');
   const again = h('button', { type: 'button', class: 'text-button', on: { click: () => app.keypoints.restore() } }, 'As found');
-  const search = h('button', { type: 'button', class: 'text-button', on: { click: () => app.keypoints.find() } }, 'Find again');
+  const search = h('button', { type: 'button', class: 'text-button', on: { click: () => app.keypoints.again() } }, 'Find again');
   const update = () => {
     const { adding, untouched } = app.keypoints;
     add.setAttribute('aria-pressed', String(adding));
