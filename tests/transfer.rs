@@ -254,6 +254,21 @@ fn a_floor_under_the_source_changes_nothing() {
     assert_eq!(alone.poses(target.reference()), standing.poses(target.reference()));
 }
 
+/// A button on the target is a piece of its own: all of it follows one row, that of what lies beneath it.
+#[test]
+fn a_small_loose_piece_keeps_its_shape() {
+    let (horse, camel) = (creature("horse", 2_000), creature("camel", 2_000));
+    let (mut faces, mut points) = (camel.sequence.faces().to_vec(), camel.sequence.reference().to_vec());
+    let first = points.len() as u32;
+    let (beneath, size) = (points[faces[700][0] as usize], 0.01 * camel.sequence.diagonal());
+    points.extend([DVec3::ZERO, DVec3::X, DVec3::Y, DVec3::Z].map(|p| beneath + size * (p + DVec3::ONE)));
+    faces.extend([[0, 2, 1], [0, 1, 3], [1, 2, 3], [2, 0, 3]].map(|face| face.map(|v: u32| v + first)));
+    let target = Sequence::new("with a button", faces, points, Vec::new()).expect("a mesh");
+    let skin = by_default(&horse.sequence, &target, &pairs(&horse, &camel, 12)).skin;
+    let rows = &skin.rows[first as usize..];
+    assert!(rows.iter().all(|row| row == &rows[0] && !row.is_empty()));
+}
+
 /// A figure that grows while it walks makes the other one grow as well, and walk as it would.
 #[test]
 fn growth_is_carried_over() {

@@ -2,11 +2,13 @@
 //!
 //! A tail, a hump or a hat of the target may have no twin on the source: it follows what it grows from. And wherever two
 //! neighbours follow motions that lead far apart, more than anything on the source comes apart, weights are averaged there
-//! until they do not.
+//! until they do not. What is small and loose, such as a button or an eye, keeps its shape.
 
+use super::kd_tree::KdTree;
 use super::rig::blend;
-use super::rig::weights::{Averager, Row};
+use super::rig::weights::{Averager, Row, normalised};
 use super::surface::Surface;
+use crate::mesh::pieces::{Pieces, pieces};
 use glam::{DAffine3, DVec3};
 use std::cmp::Reverse;
 use std::collections::{BTreeMap, BinaryHeap};
@@ -24,6 +26,10 @@ const AVERAGED: usize = 4000;
 const MOST_AVERAGES: usize = 12;
 /// The half width of a strip over the least that it needs.
 const WIDTH: f64 = 1.0;
+/// A piece is small if its box is not longer than this, in radii.
+const SMALL: f64 = 0.1;
+/// Rows that have more than this share in common follow much the same.
+const ALIKE: f64 = 0.5;
 /// Edges shorter than this, in radii, count as so long: slivers tell nothing.
 const SHORT: f64 = 2e-3;
 
@@ -111,6 +117,71 @@ pub fn close(surface: &Surface, rows: &mut [Row], poses: &[&[DAffine3]], allowed
         suspects.sort_unstable();
         suspects.dedup();
     }
+}
+
+/// Gives all vertices of a small piece one row of at most `most` entries, where there is more than such pieces: what the
+/// surface beneath it follows, if that is much the same as what the piece does by itself, otherwise the mean of its own.
+pub fn stiffen(surface: &Surface, rows: &mut [Row], most: usize) {
+    let small = small_pieces(surface);
+    if small.is_empty() || small.iter().map(Vec::len).sum::<usize>() == surface.len() {
+        return;
+    }
+    let mut large = vec![true; surface.len()];
+    small.iter().flatten().for_each(|&v| large[v as usize] = false);
+    let tree = KdTree::new(&surface.positions.iter().map(DVec3::to_array).collect::<Vec<_>>());
+    for piece in small {
+        let beneath = piece.iter().filter_map(|&v| {
+            let at = surface.positions[v as usize].to_array();
+            tree.nearest(&at, |u| large[u as usize]).map(|u| (u, v))
+        });
+        let own = mean(surface, rows, piece.iter().map(|&v| (v, v)), most);
+        let beneath = mean(surface, rows, beneath, most);
+        let row = if common(&own, &beneath) > ALIKE { beneath } else { own };
+        piece.iter().for_each(|&v| rows[v as usize].clone_from(&row));
+    }
+}
+
+/// The vertices of each small piece.
+fn small_pieces(surface: &Surface) -> Vec<Vec<u32>> {
+    let Pieces { count, face } = pieces(&surface.faces, surface.len());
+    let mut vertices = vec![Vec::new(); count];
+    for (corners, &piece) in surface.faces.iter().zip(&face) {
+        vertices[piece as usize].extend(corners);
+    }
+    vertices.retain(|piece| {
+        let points = || piece.iter().map(|&v| surface.positions[v as usize]);
+        let sides = points().fold(DVec3::NEG_INFINITY, DVec3::max) - points().fold(DVec3::INFINITY, DVec3::min);
+        sides.max_element() <= SMALL
+    });
+    for piece in &mut vertices {
+        piece.sort_unstable();
+        piece.dedup();
+    }
+    vertices
+}
+
+/// The mean of rows, each for a vertex whose share of the area counts: `(row, vertex)`.
+fn mean(surface: &Surface, rows: &[Row], of: impl Iterator<Item = (u32, u32)>, most: usize) -> Row {
+    let mut sum = BTreeMap::new();
+    for (row, v) in of {
+        for &(bone, share) in &rows[row as usize] {
+            *sum.entry(bone).or_insert(0.0) += surface.mass[v as usize].max(f64::MIN_POSITIVE) * share;
+        }
+    }
+    strongest(sum.into_iter().collect(), most)
+}
+
+/// The share that two rows have in common.
+fn common(a: &Row, b: &Row) -> f64 {
+    let other = |bone: u32| b.iter().find(|entry| entry.0 == bone).map_or(0.0, |entry| entry.1);
+    a.iter().map(|&(bone, share)| share.min(other(bone))).sum()
+}
+
+/// The largest entries of a row, made to sum to 1.
+fn strongest(mut row: Row, most: usize) -> Row {
+    row.sort_by(|a, b| b.1.total_cmp(&a.1).then(a.0.cmp(&b.0)));
+    row.truncate(most);
+    normalised(row)
 }
 
 /// Vertices that along edges are nearer to one of some vertices than that one's reach.

@@ -275,6 +275,7 @@ impl Prepared {
         let seen: Vec<Vec<DAffine3>> = seen.map(|maps| first.carry(maps)).collect();
         let seen: Vec<&[DAffine3]> = seen.iter().map(Vec::as_slice).collect();
         mend::close(&self.target, &mut rows, &seen, self.allowed, INFLUENCES);
+        mend::stiffen(&self.target, &mut rows, INFLUENCES);
         let joints = joints(&rows);
         let moments = self.rig.maps.iter().zip(&self.growths);
         let maps = moments.map(|(maps, &growth)| self.carried(&joints, maps, growth)).collect();
