@@ -174,8 +174,11 @@ export class App extends EventTarget {
 
   /** The page as a link has it, before something is opened. @param {Partial<Doc>} doc */
   reset(doc) {
+    const { open } = this.doc;
+    const blank = { ...BLANK, open, ...doc };
     this.history.rest();
-    this.edit({ ...BLANK, open: this.doc.open, ...doc }, OPENING);
+    if (open) this.edit(blank, OPENING);
+    else this.amend(blank);
     this.linked = true;
   }
 
@@ -288,8 +291,10 @@ export class App extends EventTarget {
     const before = this.doc;
     // A target stays: what is new is to move it as well. So do points in which there is work, where they mean the same.
     const { changes, target, method } = before;
+    // How many points were given says nothing of how many are wanted.
+    const search = before.run ? this.keypoints.asked : before.search;
     const patch = !afresh && this.keypoints.worked && sameMesh(this.sequence, open.sequence) ? { open, wanted: null, run: null }
-      : { ...BLANK, open, changes, search: this.keypoints.asked, target, method };
+      : { ...BLANK, open, changes, search, target, method };
     if (!this.linked) this.history.rest();
     this.linked = false;
     if (before.open) this.history.edit(patch, OPENING);
@@ -583,7 +588,7 @@ const viewOf = (step, view) => stepNamed(step).views?.find(({ id }) => id === vi
 const clamp = (value, low, high) => Math.min(Math.max(value, low), Math.max(low, high));
 
 /** Whether a figure was opened from files of the visitor's own. @param {Open|null} figure */
-const isOwn = (figure) => figure?.source.kind === 'files';
+export const isOwn = (figure) => figure?.source.kind === 'files';
 
 /** Whether the source or the target is the visitor's own. @param {Doc} doc */
 export const hasOwn = ({ open, target }) => isOwn(open) || isOwn(target);

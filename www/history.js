@@ -47,9 +47,13 @@ export class History {
     this.mark = null;
   }
 
-  /** Forgets everything but a state that is in force from now on. @param {State} now @param {string|null} mark as of {@link edit} */
+  /**
+   * Forgets everything but a state that is in force from now on, and what was before the opening that led to it.
+   * @param {State} now @param {string|null} mark as of {@link edit}
+   */
   restart(now, mark = null) {
-    Object.assign(this, { now: Object.freeze(now), past: [], future: [], mark });
+    const past = this.mark === OPENING ? this.past : [];
+    Object.assign(this, { now: Object.freeze(now), past, future: [], mark });
   }
 
   /** Forgets the newest state that is not worth its room, and all before it. @param {(state: State) => boolean} worth asked from the newest on */

@@ -1,5 +1,5 @@
 /** A guided tour as one takes it: the card over the panel, and the list of tours. */
-import { hasOwn } from './app.js';
+import { hasOwn, isOwn } from './app.js';
 import { h, show } from './dom.js';
 import { countOf, viewNow } from './stages.js';
 import { METHODS } from './steps/methods.js';
@@ -65,7 +65,8 @@ export class Guide {
     app.changed('tour', 'link');
     if (!left) return;
     await this.opened;
-    if (hasOwn(app.doc)) return;
+    const { open, target } = left.doc;
+    if ([app.doc.open, app.doc.target].some((figure) => isOwn(figure) && figure !== open && figure !== target)) return;
     app.views = left.views;
     app.takeUp(left.doc);
     app.setStep(left.step);

@@ -238,6 +238,37 @@ fn a_cancel_costs_one_step() {
 
 #[test]
 #[ignore = "drives the built page in Chromium: run by `cargo xtask test`"]
+fn one_point_more_keeps_those_that_were_placed() {
+    let mut page = proposed(Backend::WebGl2, Screen::Still);
+    page.press("a");
+    page.wait_until(&format!("sinew.state().tally.placed === 8 && {IDLE}"), PATIENT);
+    let first = "JSON.stringify(sinew.app.doc.points.slice(0, 8))";
+    let before = page.evaluate(first);
+    page.evaluate("void sinew.app.keypoints.setCount(10)");
+    page.wait_until(&format!("sinew.state().points === 10 && sinew.state().tally.proposed === 2 && {IDLE}"), PATIENT);
+    assert_eq!(page.evaluate(first), before);
+    assert_eq!(page.evaluate("new Set(sinew.app.doc.points.map(({ source }) => source)).size"), 10);
+    page.press_with_control("z");
+    page.wait_until(&format!("sinew.state().points === 8 && sinew.state().moves && {IDLE}"), PATIENT);
+    assert_eq!(page.evaluate(first), before);
+}
+
+#[test]
+#[ignore = "drives the built page in Chromium: run by `cargo xtask test`"]
+fn a_search_finds_as_many_points_as_were_in_use() {
+    let mut page = opened(Backend::WebGl2, Screen::Still, "#v1;zoo=snake;faces=3000;k.points=8");
+    step(&mut page, "keypoints");
+    page.wait_until("sinew.state().points === 8 && !sinew.state().busy", PATIENT);
+    page.evaluate("sinew.app.keypoints.setCount(5)");
+    page.evaluate_within("sinew.app.keypoints.setParameter('lambda', 1).then(() => 0)", PATIENT);
+    assert_eq!(page.state()["points"], 5);
+    assert_eq!(page.evaluate("sinew.app.doc.run.key_points.length"), 5);
+    page.evaluate_within("sinew.app.keypoints.setParameter('error', 0.05).then(() => 0)", PATIENT);
+    assert_eq!(page.evaluate("sinew.app.doc.search.points"), Value::Null, "a rule takes the place of a number");
+}
+
+#[test]
+#[ignore = "drives the built page in Chromium: run by `cargo xtask test`"]
 fn the_gallery_opens_pairs_that_move() {
     let mut page = opened(Backend::WebGl2, Screen::Small, "#v1;zoo=snake;faces=3000");
     page.evaluate("Object.assign(sinew.app.about.recipe, { faces: 4000, poses: 12 }); undefined");

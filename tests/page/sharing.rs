@@ -58,6 +58,11 @@ fn odd_and_old_links_open_something() {
         page.wait_until(&format!("location.search === '?{}' && {SETTLED}", hash.len()), 30.0);
         assert_eq!(page.state()["error"], Value::Null, "{hash}");
     }
+    page.go("?unknown#v1;zoo=nothing;target=zzz;t=99999");
+    page.wait_until(&format!("location.search === '?unknown' && {SETTLED}"), 30.0);
+    let said = page.evaluate("sinew.app.notice?.text").to_string();
+    assert!(said.contains("“nothing”") && said.contains("“zzz”"), "{said}");
+    assert_eq!(page.state()["time"], 0, "there is no such moment to stop at");
 }
 
 #[test]
@@ -118,6 +123,8 @@ fn a_project_holds_the_visitors_own_files() {
     // It is a GLB as any other.
     let gltf = gltf::Gltf::from_slice(&bytes).expect("a valid GLB");
     assert_eq!(gltf.meshes().next().map(|mesh| mesh.primitives().len()), Some(2));
+    // With points that were placed the browser would ask, and nobody is there to answer.
+    page.evaluate("sinew.app.target.close()");
     page.go("?again#v1;zoo=snake;faces=3000");
     page.wait_until(&format!("location.search === '?again' && {SETTLED}"), 30.0);
     page.drop_files(&[("project.glb", &bytes)]);

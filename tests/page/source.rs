@@ -214,3 +214,118 @@ fn a_broken_engine_costs_one_step() {
     let after = page.state();
     assert_eq!((&after["source"], &after["error"]), (&before["source"], &serde_json::Value::Null));
 }
+
+/// Whether a point is where it was, on both sides.
+const PLACES: &str = "JSON.stringify(sinew.app.doc.points.map(({ source, target, state }) => [source, target, state]))";
+const STILL: &str = "sinew.app.result && !sinew.state().busy && !sinew.app.opening && sinew.state().drawn";
+
+/// A hinge of the visitor's own, and a target on which every point is placed.
+fn placed() -> Page {
+    let mut page = Page::open(Backend::WebGl2, Screen::Still, "#v1;zoo=snake;faces=3000;k.points=4");
+    page.wait_until(SETTLED, 30.0);
+    page.drop_files(&[("hinge.glb", &glb::hinge(24))]);
+    page.wait_until(&format!("sinew.state().source.name.includes('hinge') && {STILL}"), 30.0);
+    page.evaluate("sinew.app.setStep('target')");
+    page.wait_until(&format!("sinew.state().points === 4 && {STILL}"), 60.0);
+    page.drop_files(&[("other.glb", &glb::hinge(16))]);
+    page.wait_until(&format!("sinew.state().moves && sinew.state().tally.proposed === 4 && {STILL}"), 60.0);
+    page.evaluate("sinew.app.target.acceptAll()");
+    page.wait_until(&format!("sinew.state().tally.placed === 4 && {STILL}"), 60.0);
+    page
+}
+
+#[test]
+#[ignore = "drives the built page in Chromium: run by `cargo xtask test`"]
+fn points_are_placed_once_for_all_poses_of_a_mesh() {
+    let mut page = placed();
+    let places = page.evaluate(PLACES);
+    let before = page.state();
+    page.evaluate("void sinew.app.reopen({ sampling: { rate: 6 } })");
+    page.wait_until(
+        &format!("sinew.state().source.poses < {} && sinew.state().moves && {STILL}", before["source"]["poses"]),
+        30.0,
+    );
+    page.wait_until(&format!("sinew.state().pointError > 0 && {STILL}"), 30.0);
+    let after = page.state();
+    assert_eq!(page.evaluate(PLACES), places);
+    assert_ne!(after["pointError"], before["pointError"], "the error is that of the new poses");
+    assert_eq!(page.evaluate("sinew.app.doc.run"), serde_json::Value::Null);
+    page.press_with_control("z");
+    page.wait_until(
+        &format!("sinew.state().source.poses === {} && sinew.state().moves && {STILL}", before["source"]["poses"]),
+        30.0,
+    );
+    let back = page.state();
+    for what in ["source", "target", "parts", "points", "pointError", "tally", "error"] {
+        assert_eq!(back[what], before[what], "{what}");
+    }
+}
+
+#[test]
+#[ignore = "drives the built page in Chromium: run by `cargo xtask test`"]
+fn undo_reopens_what_was_open() {
+    let mut page = placed();
+    let (places, before) = (page.evaluate(PLACES), page.state());
+    for opening in [
+        "void sinew.app.openCreature({ name: 'snake', faces: 3000 })",
+        "void sinew.app.target.openPair('snake', 'hand')",
+        "location.hash = '#v1;zoo=snake;faces=3000'",
+    ] {
+        page.evaluate(&format!("{opening}; undefined"));
+        page.wait_until("sinew.state().source.name === 'snake'", 60.0);
+        let said = page.evaluate("sinew.app.notice?.text").to_string();
+        assert!(said.contains("hinge.glb was closed. Undo brings it back with its points"), "{opening}: {said}");
+        page.wait_until(&format!("sinew.state().parts && {STILL}"), 60.0);
+        page.click("#undo");
+        page.wait_until(
+            &format!("sinew.state().source.name.includes('hinge') && sinew.state().moves && {STILL}"),
+            60.0,
+        );
+        let after = page.state();
+        assert_eq!(page.evaluate(PLACES), places, "{opening}");
+        for what in ["source", "target", "parts", "residual", "tally", "error"] {
+            assert_eq!(after[what], before[what], "{opening}: {what}");
+        }
+    }
+    page.click("#redo");
+    page.wait_until(&format!("sinew.state().source.name === 'snake' && {STILL}"), 60.0);
+}
+
+#[test]
+#[ignore = "drives the built page in Chromium: run by `cargo xtask test`"]
+fn a_tour_gives_back_what_it_took_the_place_of() {
+    let mut page = placed();
+    let (places, before) = (page.evaluate(PLACES), page.state());
+    page.click("#open-tours");
+    page.click("#tour-bend");
+    page.wait_until(
+        &format!("sinew.state().source.name === 'horse' && sinew.state().step === 'parts' && {STILL}"),
+        60.0,
+    );
+    page.click("#tour-leave");
+    page.wait_until(&format!("sinew.state().source.name.includes('hinge') && sinew.state().moves && {STILL}"), 60.0);
+    let after = page.state();
+    assert_eq!(page.evaluate(PLACES), places);
+    for what in ["source", "target", "parts", "tally", "step", "tour", "error"] {
+        assert_eq!(after[what], before[what], "{what}");
+    }
+    let asks = "!dispatchEvent(new Event('beforeunload', { cancelable: true }))";
+    assert_eq!(page.evaluate(asks), true, "points that were placed by hand are not left without a question");
+    page.evaluate("sinew.app.target.close()");
+    assert_eq!(page.evaluate(asks), false);
+}
+
+#[test]
+#[ignore = "drives the built page in Chromium: run by `cargo xtask test`"]
+fn parts_have_colours_though_the_picture_comes_late() {
+    let mut page = Page::open(Backend::WebGl2, Screen::Still, "#v1;zoo=snake;faces=3000");
+    page.wait_until(SETTLED, 30.0);
+    let shown = "[sinew.app.colours.length, document.querySelectorAll('#panel .swatch').length].join()";
+    let before = page.evaluate(shown);
+    // As it is when the parts are found before there is a picture to colour them.
+    page.evaluate("sinew.app.colours = new Uint8Array(); sinew.app.changed('result'); window.lost = document.querySelector('#stage canvas'); undefined");
+    assert_ne!(page.evaluate(shown), before);
+    page.evaluate("lost.getContext('webgl2').getExtension('WEBGL_lose_context').loseContext()");
+    page.wait_until("!lost.isConnected && sinew.app.colours.length", 10.0);
+    assert_eq!(page.evaluate(shown), before);
+}
