@@ -248,7 +248,7 @@ fn carried(source: &Sequence, target: &Sequence, moved: &transfer::Transfer) -> 
     finite("error", [moved.source_error])?;
     let named = source.poses().iter().zip(poses).map(|(pose, positions)| Pose { positions, ..pose.clone() }).collect();
     let moving = Sequence::new("moved", target.faces().to_vec(), target.reference().to_vec(), named);
-    read_back(target, exact(&moving.map_err(|why| why.to_string())?))?;
+    read_back(target, exact(&moving.map_err(|why| why.to_string())?, None))?;
     let named = source.poses().iter().zip(&moved.skin.maps);
     let maps: Vec<SkinPose> = named.map(|(pose, maps)| SkinPose { name: &pose.name, time: pose.time, maps }).collect();
     let dense = moved.skin.dense();
@@ -259,6 +259,7 @@ fn carried(source: &Sequence, target: &Sequence, moved: &transfer::Transfer) -> 
         weights: &dense,
         handles: moved.skin.handles.len(),
         poses: &maps,
+        look: None,
     };
     if let Some(file) = sentence(light(&skinned, Influences::Four), true)? {
         finite("light form", [file.largest, file.rms])?;

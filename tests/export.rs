@@ -131,7 +131,7 @@ fn still_and_empty_skins_are_files_too() {
     let still = light(&made.skin(&[]), Influences::Four).unwrap();
     let imported = read(still.bytes, Sampling::Keys);
     assert_eq!((imported.sequence.poses().len(), imported.clips.len()), (0, 0));
-    let nothing = Skin { name: "", faces: &[], reference: &[], weights: &[], handles: 1, poses: &[] };
+    let nothing = Skin { name: "", faces: &[], reference: &[], weights: &[], handles: 1, poses: &[], look: None };
     let file = light(&nothing, Influences::Four).unwrap();
     assert_eq!((file.rms, file.largest), (0.0, 0.0));
     assert!(file.bytes.starts_with(b"glTF"));
@@ -150,7 +150,7 @@ proptest! {
         let maps: Vec<Vec<DAffine3>> = maps.iter().map(|m| m.iter().map(DAffine3::from_cols_array).collect()).collect();
         let poses: Vec<SkinPose> = maps.iter().enumerate()
             .map(|(p, maps)| SkinPose { name: "pose", time: p as f64, maps }).collect();
-        let skin = Skin { name: "any", faces: &faces, reference: &reference, weights: &weights, handles: 4, poses: &poses };
+        let skin = Skin { name: "any", faces: &faces, reference: &reference, weights: &weights, handles: 4, poses: &poses, look: None };
         let file = light(&skin, Influences::Four).unwrap();
         prop_assert!(file.largest < 2e-6, "{}", file.largest);
         let imported = read(file.bytes, Sampling::Rate(1.0));
