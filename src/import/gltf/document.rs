@@ -1,8 +1,8 @@
 //! The JSON document of a glTF file, read entry by entry.
 //!
 //! Each entry is read by itself, so that an error names the entry, and only what concerns geometry and motion is
-//! read, so that an odd material or texture does not keep anyone from their mesh: these are kept as they are. The entries are the types of
-//! the `gltf` crate; nothing in them is checked yet: every index may be out of range.
+//! read, so that an odd material or texture does not keep anyone from their mesh: these are kept as they are. The
+//! entries are the types of the `gltf` crate; nothing in them is checked yet: every index may be out of range.
 
 use super::extensions::{self, Extensions};
 use super::look::Materials;
