@@ -210,7 +210,7 @@ fn on_vertices(values: vec2u, weights: vec3f, dx: vec3f, dy: vec3f) -> vec4f {
 }
 
 @fragment
-fn picture_fragment(in: Seen) -> @location(0) vec4f {
+fn picture_fragment(in: Seen, @builtin(front_facing) front: bool) -> @location(0) vec4f {
     let dx = dpdx(in.weights);
     let dy = dpdy(in.weights);
     let pixel = in.position.xy;
@@ -258,10 +258,15 @@ fn picture_fragment(in: Seen) -> @location(0) vec4f {
     // Light.
     var n = normalize(in.normal + vec3f(0.0, 1e-9, 0.0));
     let towards = normalize(stage.eye.xyz - in.world);
-    // Seen from inside. A back face that peeps over the silhouette keeps its normal, or the outline would be dotted.
-    n *= select(1.0, -1.0, dot(n, towards) < -0.25);
+    // Seen from inside, the light on the other side counts. At the silhouette that comes softly, or the outline would
+    // be dotted where a back face peeps over it.
+    let facing = dot(n, towards);
+    let inside = 1.0 - select(smoothstep(-0.1, 0.02, facing), smoothstep(-0.3, -0.2, facing), front);
+    let upward = n.y * (1.0 - 2.0 * inside);
     let depth = (dot(stage.eye.xyz - in.world, stage.back.xyz) - stage.right.w) / (stage.up.w - stage.right.w);
-    let wrapped = clamp((dot(n, stage.key.xyz) + 0.3) / 1.3, 0.0, 1.0);
+    let lamp = dot(n, stage.key.xyz);
+    let sides = clamp((vec2f(lamp, -lamp) + 0.3) / 1.3, vec2f(0.0), vec2f(1.0));
+    let wrapped = mix(sides.x, sides.y, inside);
     var arrives = vec2f(1.0);
     // Plain drawing has no shadows.
     if stage.key.w > 0.0 {
@@ -274,10 +279,10 @@ fn picture_fragment(in: Seen) -> @location(0) vec4f {
     let above = (in.world.y - stage.ground.y) / stage.eye.w;
     let below = textureSampleLevel(ground_map, ground_sampler, ground_place(in.world) * vec2f(0.5, -0.5) + 0.5, 0.0);
     let covered = 1.0 - 0.55 * below.z * exp(-1.5 * max(above, 0.0));
-    let sky = stage.sky_light.rgb * (0.5 + 0.5 * n.y);
-    let bounce = stage.ground_light.rgb * (0.5 - 0.5 * n.y) * covered * mix(0.45, 1.0, smoothstep(0.0, 0.35, above));
-    let turned = 1.0 - clamp(dot(n, towards), 0.0, 1.0);
-    let edge = turned * turned * turned * (0.5 + 0.5 * n.y);
+    let sky = stage.sky_light.rgb * (0.5 + 0.5 * upward);
+    let bounce = stage.ground_light.rgb * (0.5 - 0.5 * upward) * covered * mix(0.45, 1.0, smoothstep(0.0, 0.35, above));
+    let turned = 1.0 - clamp(facing * (1.0 - 2.0 * inside), 0.0, 1.0);
+    let edge = turned * turned * turned * (0.5 + 0.5 * upward);
     let rim = stage.key_light.rgb * (stage.key_light.w * edge);
     // Light that has gone from clay to clay takes on its colour: hollows are warm, not grey.
     let tinted = hollow * (0.85 + 0.15 * hollow + 0.6 * (1.0 - hollow) * albedo);
