@@ -38,6 +38,8 @@ export function pins(app, side, stage, host) {
   host.append(layer);
   let known = '';
   let mesh = null;
+  /** What is to be numbered with the next frame: before it, the pins are not to be seen. @type {ReturnType<typeof pinsOf>|null} */
+  let coming = null;
   const update = () => {
     const list = pinsOf(app, side);
     const key = JSON.stringify(list);
@@ -45,10 +47,11 @@ export function pins(app, side, stage, host) {
     known = key;
     mesh = stage.kept.mesh;
     stage.pins = list.map(({ pin }) => pin);
-    show(layer, ...list.map(({ index, pin }) => h('span', { class: pin.selected ? 'selected number' : 'number', 'data-state': pin.state }, String(index + 1))));
-    place();
+    coming = list;
   };
   const place = () => {
+    if (coming) show(layer, ...coming.map(({ index, pin }) => h('span', { class: pin.selected ? 'selected number' : 'number', 'data-state': pin.state }, String(index + 1))));
+    coming = null;
     if (!layer.childElementCount) return;
     const places = stage.pinPositions();
     [...layer.children].forEach((number, i) => {
