@@ -3,7 +3,7 @@
  * is, and both are painted by how far they are apart.
  */
 import { h } from './dom.js';
-import { number } from './format.js';
+import { ofSize } from './format.js';
 import { link } from './stage.js';
 import { METHODS } from './steps/methods.js';
 
@@ -81,7 +81,7 @@ export function beside(app, first, make) {
     }
     const mean = values.reduce((sum, value) => sum + value, 0) / values.length;
     const name = METHODS.find(([id]) => id === other.method)?.[1];
-    words.textContent = `${name}: off by ${number((100 * mean) / sequence.diagonal, 2)} % of the size here, bright from ${number((100 * high) / sequence.diagonal, 2)} %`;
+    words.textContent = `${name}: off by ${ofSize(mean / sequence.diagonal)} of the size here, bright from ${ofSize(high / sequence.diagonal)}`;
   };
 
   app.on('rival step target second', arrange);

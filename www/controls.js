@@ -22,14 +22,14 @@ export function slider({ id: own, label, symbol = '', help, low, high, step, pap
   const back = h('button', { type: 'button', class: 'reset', title: 'Back to the default', 'aria-label': `Reset ${label}`, on: { click: reset } },
     icon('reset'));
   const share = (v) => (v - low) / (high - low);
-  const band = paper && h('span', { class: paper[0] === paper[1] ? 'paper point' : 'paper', title: `The paper: ${paperText(paper)}`, style: {
+  const band = paper && h('span', { class: paper[0] === paper[1] ? 'paper point' : 'paper', title: `The paper: ${paperText(paper, reading)}`, style: {
     '--from': share(paper[0]), '--to': share(paper[1]),
   } });
   const element = h('div', { class: 'slider' },
     h('div', { class: 'slider-head' },
       h('label', { for: id, title: help }, label, symbol && h('i', { class: 'symbol' }, symbol)), back, value),
     h('div', { class: 'track' }, range, band),
-    paper && h('p', { class: 'small faint paper-text' }, `paper ${paperText(paper)}`));
+    paper && h('p', { class: 'small faint paper-text' }, `paper ${paperText(paper, reading)}`));
   return {
     element,
     set(number, text, changed) {
@@ -49,7 +49,7 @@ export function slider({ id: own, label, symbol = '', help, low, high, step, pap
   };
 }
 
-const paperText = ([from, to]) => (from === to ? String(from) : `${from} to ${to}`);
+const paperText = ([from, to], reading) => (from === to ? reading(from) : `${reading(from)} to ${reading(to)}`);
 
 /** A drop-down list. `options` are `[value, label]`. */
 export function select(label, options, chosen, change) {

@@ -1,6 +1,6 @@
 /** Plots of the key points: the error by their number, energies by round, candidates by error. */
 import { svg } from './dom.js';
-import { number } from './format.js';
+import { number, ofSize } from './format.js';
 import { axis, frame, HEIGHT, FOOT, tick, ticksBetween, WIDTH } from './plot.js';
 
 const FLOOR = HEIGHT - FOOT;
@@ -35,13 +35,13 @@ export function errorCurve(errors, { count, error, bound, choose }, label) {
     words.setAttribute('x', place[0] + (left ? -8 : 8));
     words.setAttribute('y', Math.max(10, place[1] - 8));
     words.setAttribute('text-anchor', left ? 'end' : 'start');
-    words.textContent = value === undefined ? `${points} points` : `${points} · ${number(value, 2)}`;
+    words.textContent = value === undefined ? `${points} points` : `${points} · ${ofSize(value)}`;
   };
   set(count);
   const points = Array.from(errors, (value, i) => [x(i + 1), y(value)]);
   const plot = frame(label, axis(),
     bound && [svg('line', { x1: 0, x2: WIDTH, y1: y(bound), y2: y(bound), class: 'mark faint' }),
-      svg('text', { x: WIDTH, y: y(bound) - 4, 'text-anchor': 'end' }, `ε = ${number(bound, 2)}`)],
+      svg('text', { x: WIDTH, y: y(bound) - 4, 'text-anchor': 'end' }, `ε = ${ofSize(bound)}`)],
     svg('polyline', { points: points.map((p) => p.map((v) => v.toFixed(1)).join()).join(' '), class: 'curve' }),
     ...points.map(([cx, cy]) => svg('circle', { cx, cy, r: 2, class: 'dot' })),
     line, grip, words,
@@ -95,6 +95,6 @@ export function ranking(errors, chosen, label) {
   const y = (error) => FLOOR - (error / most) * (FLOOR - TOP);
   return frame(label, axis(),
     ...order.map(({ error, i }, rank) => svg('circle', { cx: x(rank).toFixed(1), cy: y(error).toFixed(1), r: i === chosen ? 4.5 : 2, class: i === chosen ? 'dot accent' : 'dot' })),
-    svg('text', { x: 0, y: 9 }, number(most, 2)),
+    svg('text', { x: 0, y: 9 }, ofSize(most)),
     ...ticksBetween(1, order.length).map((rank) => tick(x(rank - 1), String(rank))));
 }

@@ -5,7 +5,7 @@
 import { compares, comparison } from './beside.js';
 import { choice, slider } from './controls.js';
 import { h, iconButton, show } from './dom.js';
-import { number, plural } from './format.js';
+import { number, ofSize, plural } from './format.js';
 import { colourBar } from './plot.js';
 import { stageStrip } from './strip.js';
 import { stepNamed } from './steps/index.js';
@@ -130,7 +130,7 @@ function pointsSlider(app) {
       const { count, points, run } = app.doc;
       range.max = Math.min(MOST_POINTS, Math.max(16, points.length + 4));
       const { error } = app.keypoints;
-      control.set(count, error === undefined ? String(count) : `${count} · error ${number(error, 2)}`, Boolean(run) && count !== run.key_points.length);
+      control.set(count, error === undefined ? String(count) : `${count} · error ${ofSize(error)}`, Boolean(run) && count !== run.key_points.length);
     },
   };
 }

@@ -37,8 +37,8 @@ export function percent(share, digits = 1) {
   return `${(100 * share).toFixed(digits)} %`;
 }
 
-/** A residual: a length over the diagonal, in thousandths. */
-export const perMille = (value) => (Number.isFinite(value) ? `${(1000 * value).toFixed(2)} ‰` : '–');
+/** An error: a length over the size of the whole, in hundredths. */
+export const ofSize = (value) => `${number(100 * value, 2)} %`;
 
 /** “person-arms-out” → “Person arms out”. */
 export const title = (name) => (name.charAt(0).toUpperCase() + name.slice(1)).replaceAll('-', ' ');

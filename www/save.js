@@ -1,6 +1,6 @@
 /** What can be taken away as a file: pictures, meshes, numbers. */
 import { h } from './dom.js';
-import { number } from './format.js';
+import { ofSize } from './format.js';
 import { boxesOf, halves, together } from './together.js';
 
 /** The picture as it is, or of a size of its own in pixels. @param {[number, number]|null} size */
@@ -63,7 +63,7 @@ export async function saveRigid(app) {
   const made = await app.exportRigid();
   if (!made) return;
   saveBlob(new Blob([made.bytes], { type: 'model/gltf-binary' }), `${fileName(app)}-rigid.glb`);
-  app.say(`The rigid skin is off by ${number(1000 * made.rms, 2)} ‰ of its size, by ${number(1000 * made.error, 2)} ‰ at most.`, 'news');
+  app.say(`The rigid skin is off by ${ofSize(made.rms)} of its size, by ${ofSize(made.error)} at most.`, 'news');
 }
 
 /** The parts: labels of the faces, sizes, residuals, parameters. */

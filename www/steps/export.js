@@ -1,7 +1,7 @@
 /** The step Export: what can be taken away, how large it is, and what it loses. */
 import { fold, select } from '../controls.js';
 import { h, icon, show } from '../dom.js';
-import { bytes, number, plural } from '../format.js';
+import { bytes, ofSize, plural } from '../format.js';
 import { lesson } from '../lesson.js';
 import { writeProject } from '../project.js';
 import { fileName, pairName, pairsFile, partsFile, pointsFile, reportFile, saveBlob, saveParts, savePicture, saveRigid, shownFigures } from '../save.js';
@@ -76,7 +76,7 @@ function look({ doc }, file) {
 
 function detail(about, file) {
   if (!file) return about;
-  const off = file.error > 0 ? ` Off by ${number(1000 * file.rms, 2)} ‰ of its size, ${number(1000 * file.error, 2)} ‰ at most.` : '';
+  const off = file.error > 0 ? ` Off by ${ofSize(file.rms)} of its size, ${ofSize(file.error)} at most.` : '';
   return `${about}${off} ${bytes(file.blob.size)}.`;
 }
 

@@ -1,5 +1,5 @@
 /** The stage of the fit by faces: the source bent into the target, round by round. See views.js for what a view is. */
-import { number, percent } from '../format.js';
+import { ofSize, percent } from '../format.js';
 import { clay } from './search-views.js';
 
 const ready = ({ transfer: { motion } }) => motion?.rounds > 0;
@@ -22,6 +22,6 @@ export const FIT_VIEW = {
   legend(app) {
     if (!ready(app)) return { kind: 'words', text: 'By “Gradients” the source is bent into the target: choose that to see how.' };
     const { coverage, distance } = app.transfer.motion.quality;
-    return { kind: 'words', text: `At the end it covers ${percent(coverage)} of the target, at a mean distance of ${number(100 * distance, 2)} % of its radius.` };
+    return { kind: 'words', text: `At the end it covers ${percent(coverage)} of the target, at a mean distance of ${ofSize(distance)} of its radius.` };
   },
 };

@@ -2,10 +2,11 @@
 import { choice, facts, fold, slider, toggle } from '../controls.js';
 import { errorCurve, fallingLines, ranking } from '../curves.js';
 import { h, show } from '../dom.js';
-import { duration, number, plural } from '../format.js';
+import { duration, ofSize, plural } from '../format.js';
 import { lesson, stageLesson } from '../lesson.js';
 import { placeIn } from '../stages.js';
 import { hardest } from './alternation-view.js';
+import { reading } from './parameters.js';
 import { pointList } from './point-list.js';
 import { KEY_POINT_VIEWS } from './point-views.js';
 import { candidates, pointOf } from './search-views.js';
@@ -71,7 +72,7 @@ function pointFacts(app) {
   const seconds = doc.run?.seconds.reduce((sum, [, value]) => sum + value, 0) ?? 0;
   return facts([
     ['Points', String(doc.count)],
-    ['Error', keypoints.error === undefined ? '…' : number(keypoints.error), 'Mean distance of vertices from where they should be, over all poses, in radii of the whole'],
+    ['Error', keypoints.error === undefined ? '…' : ofSize(keypoints.error), 'Mean distance of vertices from where they should be, over all poses, in per cent of the radius of the whole'],
     seconds > 0 && ['Found in', duration(seconds), doc.run.seconds.map(([name, value]) => `${name}: ${duration(value)}`).join('\n')],
   ]);
 }
@@ -128,7 +129,7 @@ function listSection(app) {
 function parameterFold(app) {
   const sliders = SLIDERS.map((definition) => ({ definition, control: slider({
     ...definition,
-    reading: number,
+    reading: (value) => reading(definition, value),
     change: (value) => app.keypoints.setParameter(definition.name, value),
     reset: () => app.keypoints.setParameter(definition.name, null),
   }) }));
@@ -142,7 +143,7 @@ function parameterFold(app) {
     const { search } = app.doc;
     for (const { definition, control } of sliders) {
       const value = parameters[definition.name];
-      control.set(value ?? definition.low, number(value), definition.name in search);
+      control.set(value ?? definition.low, reading(definition, value), definition.name in search);
     }
     const chosen = stop.querySelector(`[value="${parameters.points ? 'count' : parameters.stop}"]`);
     if (chosen) chosen.checked = true;

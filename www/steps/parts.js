@@ -1,7 +1,7 @@
 /** The step Parts: its numbers, its parameters and its lesson. */
 import { choice, facts, fold, select, slider, toggle } from '../controls.js';
 import { h, show } from '../dom.js';
-import { duration, number, percent, perMille, plural } from '../format.js';
+import { duration, number, percent, plural } from '../format.js';
 import { lesson, stageLesson } from '../lesson.js';
 import { costCurve, histogram } from '../plot.js';
 import { fitting, METHODS, reading, SLIDERS, SMOOTHINGS } from './parameters.js';
@@ -36,7 +36,7 @@ function build(app) {
     for (const box of [quality, noticed, curve, ...folds]) box.hidden = !result;
     if (!result) return;
     show(quality, qualityFacts(result), h('p', { class: 'small faint note' },
-      'Residual: how far faces are from moving rigidly with their part, in thousandths (‰) of the size of the whole.'));
+      'Residual: how far faces are from moving rigidly with their part, in per cent of the size of the whole.'));
     show(noticed, ...warnings(app, result.warnings));
     show(curve, ...curvePlot(app));
     show(deformation, ...weightPlot(app));
@@ -60,9 +60,9 @@ function qualityFacts(result) {
   const seconds = result.seconds.reduce((sum, [, value]) => sum + value, 0);
   return facts([
     ['Parts', String(result.parts.length)],
-    ['Residual', perMille(result.rigid_residual),
+    ['Residual', percent(result.rigid_residual, 3),
       'Rms distance of faces from where their part’s best rigid motion puts them, over the diagonal of the bounding box'],
-    ['Before smoothing', perMille(result.residual_before_smoothing)],
+    ['Before smoothing', percent(result.residual_before_smoothing, 3)],
     seconds > 0 && ['Computed in', duration(seconds), result.seconds.map(([name, value]) => `${name}: ${duration(value)}`).join('\n')],
   ]);
 }
@@ -92,7 +92,7 @@ function partTable(app) {
     blur: () => app.paint(),
   } }, h('span', { class: 'chip', style: { 'background-color': `rgb(${colours.slice(3 * index, 3 * index + 3).join()})` } }), String(index + 1))),
   h('td', { class: 'number' }, percent(part.area)),
-  h('td', { class: 'number' }, perMille(part.residual)));
+  h('td', { class: 'number' }, percent(part.residual, 3)));
   return h('div', {},
     h('table', {},
       h('thead', {}, h('tr', {}, h('th', { scope: 'col' }, 'Part'), h('th', { scope: 'col', class: 'number' }, 'Area'), h('th', { scope: 'col', class: 'number' }, 'Residual'))),

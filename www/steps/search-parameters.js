@@ -1,8 +1,9 @@
 /** The parameters of the selection of key points: names, ranges, and what the paper says of each. */
+import { ofSize } from '../format.js';
 
 export const SLIDERS = [
-  { name: 'error', symbol: 'ε', label: 'Stop below', low: 0.005, high: 0.1, step: 0.001, paper: [0.03, 0.03],
-    help: 'The selection ends when vertices are on average no farther off than this, in radii of the whole (Eq. 22).' },
+  { name: 'error', symbol: 'ε', label: 'Stop below', low: 0.005, high: 0.1, step: 0.001, paper: [0.03, 0.03], format: ofSize,
+    help: 'The selection ends when vertices are on average no farther off than this, in per cent of the radius of the whole (Eq. 22).' },
   { name: 'candidates', symbol: 'n', label: 'Candidate points', low: 10, high: 300, step: 5, paper: [100, 100],
     help: 'How many points, far apart from each other, the key points are chosen from (§3.1).' },
   { name: 'lambda', symbol: 'λ', label: 'Rigidity', low: 0, high: 4, step: 0.05, paper: [0.5, 0.5],

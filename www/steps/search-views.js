@@ -1,5 +1,5 @@
 /** The stages of the search for key points: candidates, the greedy choice, replacement. See views.js for what a view is. */
-import { number, plural } from '../format.js';
+import { ofSize, plural } from '../format.js';
 import { MARK, swatch } from './paint.js';
 
 const ERROR = 'cividis';
@@ -47,7 +47,7 @@ export const candidates = {
   first: ({ doc: { run } }) => (run?.steps.length ?? 1) - 1,
   where({ doc: { run } }, index) {
     const step = run?.steps[index];
-    return step ? `point ${pointOf(run, index)} is vertex ${step.chosen}: error ${number(step.error, 2)}` : '';
+    return step ? `point ${pointOf(run, index)} is vertex ${step.chosen}: error ${ofSize(step.error)}` : '';
   },
   paint(app, index) {
     clay(app);
@@ -92,7 +92,7 @@ export const replacement = {
   first: ({ doc: { run } }) => run?.replacements.length ?? 0,
   where({ doc: { run } }, index) {
     const swap = run?.replacements[index - 1];
-    return swap ? `vertex ${swap.from} gave way to ${swap.to}: error ${number(swap.error, 2)}` : '';
+    return swap ? `vertex ${swap.from} gave way to ${swap.to}: error ${ofSize(swap.error)}` : '';
   },
   paint(app, index) {
     clay(app);

@@ -94,8 +94,8 @@ export const refined = {
   legend: (app) => ({
     kind: 'words',
     text: app.result.merges.length
-      ? [swatch(MARK.highlight), `${plural(refinedFaces(app).length, 'face')} went to a part whose motion explains ${refinedFaces(app).length === 1 ? 'it' : 'them'} better. Residual ${number(1000 * app.result.residual_before_smoothing)} ‰ of its size.`]
-      : `The clusters. Residual ${number(1000 * app.result.residual_before_smoothing)} ‰ of its size.`,
+      ? [swatch(MARK.highlight), `${plural(refinedFaces(app).length, 'face')} went to a part whose motion explains ${refinedFaces(app).length === 1 ? 'it' : 'them'} better. Residual ${percent(app.result.residual_before_smoothing, 3)} of its size.`]
+      : `The clusters. Residual ${percent(app.result.residual_before_smoothing, 3)} of its size.`,
   }),
 };
 
