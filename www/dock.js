@@ -117,17 +117,21 @@ function partsSlider(app) {
 
 function pointsSlider(app) {
   const control = slider({
-    label: 'Number of key points', low: 1, high: 24, step: 1, reading: (value) => String(value),
+    id: 'control-number-of-key-points', label: 'Key points', low: 1, high: 24, step: 1, reading: (value) => String(value),
     input: (value) => value <= app.doc.points.length && app.keypoints.setCount(value),
     change: (value) => app.keypoints.setCount(value),
     reset: () => app.keypoints.setCount(app.doc.run?.key_points.length ?? app.doc.count),
   });
   control.element.classList.add('wide');
   const range = control.element.querySelector('input');
+  const chosen = h('span', { class: 'chosen' });
+  control.element.querySelector('output').before(chosen);
   return {
     element: control.element,
     update() {
       const { count, points, run } = app.doc;
+      show(chosen, ...(app.selected < 0 ? [] : [dot(app, app.selected),
+        textButton('dock-remove', 'Remove', `Remove point ${app.selected + 1} (Delete)`, () => app.keypoints.remove(app.selected))]));
       range.max = Math.min(MOST_POINTS, Math.max(16, points.length + 4));
       const { error } = app.keypoints;
       control.set(count, error === undefined ? String(count) : `${count} · error ${ofSize(error)}`, Boolean(run) && count !== run.key_points.length);
@@ -135,18 +139,20 @@ function pointsSlider(app) {
   };
 }
 
+const textButton = (id, text, title, click) => h('button', { type: 'button', class: 'text-button small', id, title, on: { click } }, text);
+
 /** What to do with the points of the target next. */
 function whereNext(app) {
   const { target, doc, selected } = app;
   const chosen = doc.points[selected];
   const { proposed, missing } = target.tally;
   const line = (index, text, ...buttons) => h('div', { class: 'where' }, index >= 0 && dot(app, index), h('span', { class: 'small' }, text), ...buttons);
-  const button = (id, text, click) => h('button', { type: 'button', class: 'text-button small', id, on: { click } }, text);
-  const all = proposed > 0 && button('dock-accept-all', 'Accept all', () => target.acceptAll());
+  const all = proposed > 0 && textButton('dock-accept-all', 'Accept all', 'Accept all proposals (A)', () => target.acceptAll());
   if (!doc.target) return line(-1, 'Choose a figure that is to move like this one.');
   if (chosen) {
-    if (chosen.state === 'proposed') return line(selected, 'Proposed. Drag it if it is wrong.', button('dock-accept', 'Accept', () => target.accept(selected)), all);
-    return line(selected, chosen.target == null ? 'Click on the target to place it.' : 'Placed. Drag it to move it.', all);
+    const remove = chosen.target != null && textButton('dock-remove', 'Remove', `Take point ${selected + 1} off the target (Delete)`, () => target.remove(selected));
+    if (chosen.state === 'proposed') return line(selected, 'Proposed. Drag it if wrong.', remove, textButton('dock-accept', 'Accept', `Accept point ${selected + 1} (Enter)`, () => target.accept(selected)));
+    return line(selected, chosen.target == null ? 'Click on the target to place it.' : 'Placed. Drag it to move it.', remove, all);
   }
   if (app.step === 'target' && (proposed || missing) && target.wanted >= 0) return line(target.wanted, 'Click where this one lies on the target.', all);
   if (proposed) return line(-1, `${plural(proposed, 'point')} proposed`, all);
