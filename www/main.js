@@ -20,6 +20,7 @@ import { progressBar } from './progress.js';
 import { rail } from './rail.js';
 import { saveParts, savePicture } from './save.js';
 import { addressOf, share } from './share.js';
+import { LOW, NARROW } from './screens.js';
 import { Stage } from './stage.js';
 import { Studio } from './studio.js';
 import { tag } from './tag.js';
@@ -28,7 +29,6 @@ import { Timeline } from './timeline.js';
 import { Guide, openTours, tourCard } from './tour.js';
 import { compile } from './wasm.js';
 
-const NARROW = matchMedia('(max-width: 720px)');
 const query = new URLSearchParams(location.search);
 const bundle = (name) => compile(new URL(`../pkg/${name}_bg.wasm`, import.meta.url));
 const element = (id) => document.getElementById(id);
@@ -152,7 +152,7 @@ function openAddress() {
 function enter(fields, open, own) {
   const place = placeOf(fields);
   applyLink(fields, app);
-  app.setPanel(fields.panel !== 'away' && !NARROW.matches && !embedded);
+  app.setPanel(fields.panel !== 'away' && !NARROW.matches && !LOW.matches && !embedded);
   const arrive = () => goTo(place, recipeOf(fields, app.about, ['target', 'target.']), own);
   app.addEventListener('source', arrive, { once: true });
   return open().finally(() => app.removeEventListener('source', arrive));

@@ -6,12 +6,12 @@ import { choice } from './controls.js';
 import { h, iconButton, show } from './dom.js';
 import { title } from './format.js';
 import { pins } from './pins.js';
+import { NARROW } from './screens.js';
 import { link } from './stage.js';
 import { stepNamed } from './steps/index.js';
 
 /** How far a figure stays away from the other's picture, in pixels. */
 const INNER = 28;
-const NARROW = matchMedia('(max-width: 720px)');
 
 export class Studio {
   /**

@@ -63,4 +63,16 @@ fn nothing_clashes_on_a_desk() {
     page.resize(Screen::Desktop);
     page.rest(0.3);
     nothing_clashes(&mut page, "desktop");
+    let sheet = "panel.clientWidth === innerWidth && panel.getBoundingClientRect().top > innerHeight / 2";
+    for (screen, name, low) in
+        [(Screen::Tablet, "a tablet held upright", true), (Screen::Lying, "a phone on its side", false)]
+    {
+        page.resize(screen);
+        for open in [true, false] {
+            page.evaluate(&format!("sinew.app.setPanel({open})"));
+            page.rest(0.3);
+            nothing_clashes(&mut page, name);
+            assert!(!open || page.evaluate(sheet) == low, "{name}: the panel is a sheet from below or it is not");
+        }
+    }
 }

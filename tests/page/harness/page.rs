@@ -21,6 +21,10 @@ pub enum Screen {
     Still,
     /// 390 × 844 at two device pixels to a CSS pixel, touch.
     Phone,
+    /// A tablet held upright.
+    Tablet,
+    /// A small phone that lies on its side.
+    Lying,
 }
 
 /// The page in a tab of its own. Closing it (dropping it) fails the test if the page had problems.
@@ -107,6 +111,8 @@ impl Page {
             Screen::Desktop => (1440, 900, 1, false),
             Screen::Small | Screen::Still => (960, 640, 1, false),
             Screen::Phone => (390, 844, 2, true),
+            Screen::Tablet => (820, 1180, 1, true),
+            Screen::Lying => (667, 375, 1, true),
         };
         let metrics = json!({ "width": width, "height": height, "deviceScaleFactor": scale, "mobile": phone });
         self.call("Emulation.setDeviceMetricsOverride", metrics);
@@ -207,7 +213,7 @@ impl Page {
                 self.mouse("mousePressed", x, y, 1);
                 self.mouse("mouseReleased", x, y, 0);
             }
-            Screen::Phone => {
+            Screen::Phone | Screen::Tablet | Screen::Lying => {
                 self.call(
                     "Input.dispatchTouchEvent",
                     json!({ "type": "touchStart", "touchPoints": [{ "x": x, "y": y }] }),
@@ -295,6 +301,8 @@ impl Page {
             Screen::Desktop => "desktop",
             Screen::Small | Screen::Still => "small",
             Screen::Phone => "phone",
+            Screen::Tablet => "tablet",
+            Screen::Lying => "lying",
         };
         let folder = screenshots();
         let path = folder.join(format!("{name}-{}-{screen}.png", self.backend.name()));
