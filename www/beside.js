@@ -49,7 +49,7 @@ export function beside(app, first, make) {
     if (!app.third) {
       app.third = make(host);
       app.third.dark = app.stage.kept.dark;
-      app.third.insets = app.stage.kept.insets;
+      app.third.lie(app.stage.kept.insets, app.stage.kept.room);
       unlink = link(app.second, app.third);
     }
     const { other } = app.transfer;
@@ -90,7 +90,6 @@ export function beside(app, first, make) {
     paint();
   });
   app.stage.addEventListener('tick', paint);
-  new ResizeObserver(() => app.third && (app.third.insets = app.stage.kept.insets)).observe(first);
 }
 
 /** #V: how far the vertices of one pose are apart. */

@@ -66,7 +66,7 @@ export class Stage extends EventTarget {
     this.waiting = [];
     /** What is shown. `skin` moves `mesh` instead of its poses; `camera` is null until the visitor moves it. */
     this.kept = { mesh: null, skin: null, time: -1, loop: false, paint: [['paint_clay']], boundaries: true, wireframe: false,
-      contours: true, marks: new Map(), pins: [], camera: null, turn: null, dark: false, insets: [0, 0, 0, 0] };
+      contours: true, marks: new Map(), pins: [], camera: null, turn: null, dark: false, insets: [0, 0, 0, 0], room: [] };
     this.closing = new AbortController();
     this.started = this.#start(module);
   }
@@ -141,6 +141,7 @@ export class Stage extends EventTarget {
     this.#fit();
     this.view.set_theme(kept.dark);
     this.view.set_insets(...kept.insets);
+    this.view.set_room(Float32Array.from(kept.room));
     this.view.set_loop(kept.loop);
     if (kept.mesh) {
       this.view.set_mesh(kept.mesh.faces, kept.mesh.reference);
@@ -406,8 +407,16 @@ export class Stage extends EventTarget {
     this.#set({ dark }, (view) => view.set_theme(dark));
   }
 
-  set insets(insets) {
-    this.#set({ insets }, (view) => view.set_insets(...insets));
+  /**
+   * Which margins controls cover, and those of the room of which this picture shows a part, in CSS pixels: its light is
+   * that of the whole room, so that pictures beside each other have no seam.
+   * @param {number[]} insets left, top, right, bottom @param {number[]|null} room the same; below 0 where it goes beyond
+   */
+  lie(insets, room) {
+    this.#set({ insets, room: room ?? [] }, (view) => {
+      view.set_insets(...insets);
+      view.set_room(Float32Array.from(room ?? []));
+    });
     this.#frameUnlessMoved();
   }
 
@@ -548,6 +557,7 @@ export class Stage extends EventTarget {
     const camera = this.view.camera();
     if (size) {
       this.view.set_insets(0, 0, 0, 0);
+      this.view.set_room(new Float32Array());
       this.view.resize(size[0] / PICTURE_SCALE, size[1] / PICTURE_SCALE, PICTURE_SCALE);
       if (!this.kept.camera) this.#frameAll();
     }
@@ -556,6 +566,7 @@ export class Stage extends EventTarget {
     const blob = await new Promise((resolve) => this.canvas.toBlob(resolve, 'image/png'));
     if (size) {
       this.view.set_insets(...this.kept.insets);
+      this.view.set_room(Float32Array.from(this.kept.room));
       this.#fit();
       this.view.set_camera(camera);
       this.view.redraw();

@@ -1,6 +1,6 @@
 /**
  * Where the figures stand: the source alone, or the target beside it in a picture of its own, seen from the same
- * side. On a phone the two are switched.
+ * side or, where that makes both larger, below it. On a phone the two can be switched.
  */
 import { choice } from './controls.js';
 import { h, iconButton, show } from './dom.js';
@@ -10,8 +10,13 @@ import { NARROW } from './screens.js';
 import { link } from './stage.js';
 import { stepNamed } from './steps/index.js';
 
-/** How far a figure stays away from the other's picture, in pixels. */
-const INNER = 28;
+/** How far a figure stays away from the other's picture and from the outer edge, in pixels; on a phone, less. */
+const APART = { inner: 28, outer: 28 };
+const APART_NARROW = { inner: 20, outer: 12 };
+/** How much larger both figures together must become for one to stand above the other. */
+const WORTH_STACKING = 1.05;
+/** More points than this say no more of how large a figure is. */
+const MOST_LOOKED_AT = 20_000;
 
 export class Studio {
   /**
@@ -97,6 +102,15 @@ export class Studio {
     this.keepClear();
   }
 
+  /** Whether both figures are larger one above the other in a free part of some size, which is higher than wide then. */
+  #stacks(width, height) {
+    if (height <= width) return false;
+    const { sequence, target } = this.app;
+    const shapes = [[sequence.reference, sequence.poses], [target.sequence.reference]].map(shapeOf);
+    const size = (across, down) => shapes.reduce((product, [wide, high]) => product * Math.min(across / wide, down / high), 1);
+    return size(width, height / 2) > WORTH_STACKING * size(width / 2, height);
+  }
+
   #name() {
     const { app } = this;
     const names = [app.sequence, app.target.sequence].map((sequence) => (sequence ? title(sequence.name.replace(/\.[^.]*$/, '')) : ''));
@@ -127,27 +141,66 @@ export class Studio {
       return !element.hidden && element.getBoundingClientRect();
     };
     const side = covers('panel');
+    const opener = document.querySelector('.panel-opener')?.getBoundingClientRect();
     const below = document.querySelector('.below').getBoundingClientRect();
     const narrow = NARROW.matches;
     const free = {
       left: narrow ? 0 : covers('rail').right,
-      right: side && !narrow ? side.left : whole.right,
+      right: narrow ? whole.right : side ? side.left : opener?.width ? opener.left : whole.right,
       top: narrow ? document.querySelector('.brand').getBoundingClientRect().bottom : whole.top,
       bottom: below.height ? below.top : whole.bottom,
     };
     if (this.two && narrow) free.top += this.seam.getBoundingClientRect().height;
-    const middle = (free.left + free.right) / 2;
+    const both = this.two && this.hosts.every((host) => !host.hidden);
+    const stacked = both && this.#stacks(free.right - free.left, free.bottom - free.top);
+    document.documentElement.toggleAttribute('data-stacked', stacked);
+    // What lies between two figures side by side would lie on the upper one.
+    if (stacked) free.top = Math.max(free.top, this.seam.getBoundingClientRect().bottom);
+    const middle = stacked ? (free.top + free.bottom) / 2 : (free.left + free.right) / 2;
     this.hosts[0].parentElement.style.setProperty('--split', `${Math.round(middle)}px`);
+    const { inner, outer } = narrow ? APART_NARROW : APART;
     this.hosts.forEach((host, i) => {
       if (host.hidden) return;
       const box = host.getBoundingClientRect();
-      const insets = [free.left - box.left, free.top - box.top, box.right - free.right, box.bottom - free.bottom].map((inset) => Math.max(0, Math.round(inset)));
-      // What is in the middle of the window stays clear of the other figure.
-      if (this.two && !this.hosts[1 - i].hidden) insets[i ? 0 : 2] += INNER;
-      const stage = i ? this.app.second : this.app.stage;
-      if (stage) stage.insets = insets;
+      const margins = [free.left - box.left, free.top - box.top, box.right - free.right, box.bottom - free.bottom];
+      const insets = margins.map((margin) => Math.max(0, Math.round(margin)));
+      if (both) {
+        // What is in the middle of the window stays clear of the other figure, pins at the edge of it can be taken hold of.
+        for (const edge of [0, 2]) insets[edge] += outer;
+        const seam = (stacked ? 1 : 0) + (i ? 0 : 2);
+        insets[seam] += inner - (stacked ? 0 : outer);
+      }
+      for (const stage of i ? [this.app.second] : [this.app.stage, this.app.third]) stage?.lie(insets, both ? margins : null);
       this.captions[i].style.setProperty('left', `${(insets[0] + box.width - insets[2]) / 2}px`);
       this.captions[i].style.setProperty('top', `${insets[1]}px`);
     });
   }
+}
+
+/** About how wide and how high a figure is, from whichever side it is seen. @param {Float32Array[]} shapes its poses */
+function shapeOf(shapes) {
+  const [low, high] = [0, 1].map((end) => [0, 1, 2].map((axis) => Math[end ? 'max' : 'min'](...shapes.map((points) => extentOf(points)[end][axis]))));
+  const [x, y, z] = high.map((value, axis) => Math.max(value - low[axis], 0));
+  const wide = Math.hypot(x, z);
+  // Seen from a little above.
+  return [wide || 1, y + 0.2 * wide || 1];
+}
+
+const extents = new WeakMap();
+
+/** The lowest and the highest coordinates of points. */
+function extentOf(points) {
+  if (!extents.has(points)) {
+    const low = [Infinity, Infinity, Infinity];
+    const high = [-Infinity, -Infinity, -Infinity];
+    const step = 3 * Math.ceil(points.length / 3 / MOST_LOOKED_AT);
+    for (let i = 0; i < points.length; i += step) {
+      for (let axis = 0; axis < 3; axis++) {
+        low[axis] = Math.min(low[axis], points[i + axis]);
+        high[axis] = Math.max(high[axis], points[i + axis]);
+      }
+    }
+    extents.set(points, [low, high]);
+  }
+  return extents.get(points);
 }

@@ -4,7 +4,7 @@ use super::colour::{Srgb, oklch, srgb_to_linear};
 use glam::{Mat4, Vec3, Vec4};
 
 /// Number of 32-bit floats in the struct.
-pub const FLOATS: usize = 2 * 16 + 22 * 4;
+pub const FLOATS: usize = 2 * 16 + 23 * 4;
 
 /// The struct `Stage`.
 #[derive(Clone, Copy, Debug, Default)]
@@ -17,6 +17,7 @@ pub struct Frame {
     pub up: Vec4,
     pub back: Vec4,
     pub window: Vec4,
+    pub room: Vec4,
     pub ground: Vec4,
     pub key: Vec4,
     pub lines: Vec4,
@@ -54,6 +55,7 @@ impl Frame {
             self.up,
             self.back,
             self.window,
+            self.room,
             self.ground,
             self.key,
             self.lines,

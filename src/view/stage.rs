@@ -30,6 +30,8 @@ pub struct Stage {
     pub camera: Camera,
     board: Board,
     window: Window,
+    /// The margins of the room, if the window has only a part of it.
+    room: Option<[f32; 4]>,
     pixel_ratio: f32,
     time: f32,
     loops: bool,
@@ -79,6 +81,7 @@ impl Default for Stage {
             camera: Camera::default(),
             board: Board::default(),
             window: Window { width: 1.0, height: 1.0, insets: [0.0; 4] },
+            room: None,
             pixel_ratio: 1.0,
             time: -1.0,
             loops: false,
@@ -257,6 +260,13 @@ impl Stage {
     pub fn set_insets(&mut self, insets: [f32; 4]) {
         let insets = insets.map(|x| if x > 0.0 && x.is_finite() { x } else { 0.0 });
         self.changed(|s| &mut s.window.insets, insets);
+    }
+
+    /// Sets how far the room that several windows show together reaches into this one from its left, top, right and
+    /// bottom, CSS pixels (below 0: beyond it), so that its light does not end at their edges. Without one, the window
+    /// is a room of its own.
+    pub fn set_room(&mut self, margins: Option<[f32; 4]>) {
+        self.changed(|s| &mut s.room, margins.filter(|m| m.iter().all(|x| x.is_finite())));
     }
 
     /// Sets the time, in poses: see [`Motion::at`].
@@ -469,6 +479,8 @@ impl Stage {
         let [right, up, back] = camera.axes();
         let (near, far) = camera.range(ball);
         let (cx, cy) = self.window.centre();
+        let room = Window { insets: self.room.unwrap_or(self.window.insets), ..self.window };
+        let (rx, ry) = room.centre();
         let level = right.cross(Vec3::Y);
         let key = (right * KEY.x + Vec3::Y * KEY.y + level * KEY.z).normalize();
         let floor = self.whole().low.y;
@@ -485,6 +497,7 @@ impl Stage {
             up: up.extend(far),
             back: back.extend(self.window.focal() * ratio),
             window: glam::Vec4::new(self.window.width, self.window.height, cx, cy) * ratio,
+            room: glam::Vec4::new(rx, ry, room.focal(), 0.0) * ratio,
             ground: Vec3::new(middle.x, floor, middle.z).extend(side),
             key: key.extend(if self.plain { 0.0 } else { 0.8 }),
             lines: glam::Vec4::new(0.62 * ratio, 0.18 * ratio, on(self.boundaries, 1.0), on(self.wires, 0.4)),
@@ -531,6 +544,20 @@ mod tests {
             assert!(hit.point.distance(middle) < 1e-3);
             assert_eq!(stage.pick(1.0, 1.0), None);
         }
+    }
+
+    #[test]
+    fn windows_beside_each_other_share_the_light_of_their_room() {
+        // The right one begins where the left one has 700 of its 800 pixels.
+        let [mut left, mut right] = [stage(), stage()];
+        right.set_window(600.0, 600.0, 2.0);
+        left.set_room(Some([100.0, 0.0, -500.0, 80.0]));
+        right.set_room(Some([-600.0, 0.0, 0.0, 80.0]));
+        let (a, b) = (left.frame().room, right.frame().room);
+        assert_eq!((a.x - 2.0 * 700.0, a.y, a.z), (b.x, b.y, b.z));
+        assert_ne!(left.frame().window.z, a.x);
+        left.set_room(None);
+        assert_eq!(left.frame().room.x, left.frame().window.z);
     }
 
     #[test]

@@ -360,6 +360,12 @@ impl Viewport {
         self.stage.set_insets([left, top, right, bottom]);
     }
 
+    /// Tells how far the room that this canvas shows a part of is from its left, top, right and bottom edge: see
+    /// [`Stage::set_room`]. Without four numbers it is a room of its own.
+    pub fn set_room(&mut self, margins: &[f32]) {
+        self.stage.set_room(margins.try_into().ok());
+    }
+
     /// Makes the next `render` draw in any case. The canvas keeps its picture until the page is next shown: for a
     /// screenshot, call `redraw`, `render` and `canvas.toBlob` one after another.
     pub fn redraw(&mut self) {

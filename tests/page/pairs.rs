@@ -156,6 +156,23 @@ fn everything_is_undone_and_redone() {
 #[ignore = "drives the built page in Chromium: run by `cargo xtask test`"]
 fn a_point_is_dragged_and_the_motion_follows() {
     let mut page = proposed(Backend::WebGl2, Screen::Still);
+    a_point_is_dragged(&mut page);
+    // On a phone the target is below the source, and both are wider than half of it.
+    page.resize(Screen::Phone);
+    page.evaluate("sinew.app.setPanel(false)");
+    page.wait_until("document.documentElement.hasAttribute('data-stacked')", 3.0);
+    page.wait_until(IDLE, PATIENT);
+    let wide = "['stage', 'second'].map((id) => document.getElementById(id).clientWidth)";
+    assert_eq!(page.evaluate(wide), serde_json::json!([390, 390]));
+    let index = a_point_is_dragged(&mut page);
+    page.evaluate(&format!("sinew.app.select({index})"));
+    page.wait_until("document.querySelector('#dock-remove')?.clientHeight >= 40", 3.0);
+    page.click("#dock-remove");
+    page.wait_until(&format!("sinew.state().tally.missing === 1 && {IDLE}"), PATIENT);
+}
+
+/// Drags a pin of the target that can be seen, and takes that back; which it was.
+fn a_point_is_dragged(page: &mut Page) -> f64 {
     // A pin of the target that can be seen, and a way to go that stays on the surface.
     let seen = page.evaluate(
         "(() => { const { second } = sinew.app, box = second.canvas.getBoundingClientRect();
@@ -177,6 +194,7 @@ fn a_point_is_dragged_and_the_motion_follows() {
     page.press_with_control("z");
     page.wait_until("!sinew.state().busy", PATIENT);
     assert_eq!(page.evaluate(&vertex), before, "Ctrl+Z brings it back");
+    index
 }
 
 /// Milliseconds from a point being moved on a target of some 5,000 vertices to the picture that follows it.

@@ -256,7 +256,7 @@ fn picture_fragment(in: Seen, @builtin(front_facing) front: bool) -> @location(0
     }
 
     // Light.
-    var n = normalize(in.normal + vec3f(0.0, 1e-9, 0.0));
+    let n = normalize(in.normal + vec3f(0.0, 1e-9, 0.0));
     let towards = normalize(stage.eye.xyz - in.world);
     // Seen from inside, the light on the other side counts. At the silhouette that comes softly, or the outline would
     // be dotted where a back face peeps over it.
@@ -301,7 +301,7 @@ fn studio_fragment(in: Screen) -> @location(0) vec4f {
     let pixel = in.position.xy;
     let aside = (pixel - stage.window.zw) / stage.back.w;
     // Brightest a little below the middle, as if a lamp stood over the figure.
-    let off = length((aside - vec2f(0.0, 0.06)) * vec2f(0.85, 1.0));
+    let off = length(((pixel - stage.room.xy) / stage.room.z - vec2f(0.0, 0.06)) * vec2f(0.85, 1.0));
     var colour = mix(stage.back_middle.rgb, stage.back_rim.rgb, smoothstep(0.0, 0.75, off));
     let ray = stage.right.xyz * aside.x - stage.up.xyz * aside.y - stage.back.xyz;
     let fall = stage.ground.y - stage.eye.y;

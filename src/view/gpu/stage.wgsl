@@ -7,6 +7,7 @@ struct Stage {
     up: vec4f,              // w: farthest depth
     back: vec4f,            // w: focal length, device pixels
     window: vec4f,          // device width and height; centre of the free part
+    room: vec4f,            // middle of what all figures share, device pixels; its focal length
     ground: vec4f,          // middle of the ground map x, height of the ground y, middle z; w: half its side
     key: vec4f,             // direction to the key light; w: strength of shadows
     lines: vec4f,           // boundary half width, device pixels; wire half width; boundary strength; wire strength
