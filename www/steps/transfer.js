@@ -26,7 +26,10 @@ export const transferStep = {
 /** @param {import('../app.js').App} app */
 function build(app) {
   const words = h('p', { class: 'small faint' });
-  const go = h('button', { type: 'button', class: 'button', on: { click: () => app.setStep(app.doc.count ? 'target' : 'keypoints') } });
+  // While they are searched for there is nothing to be done about them.
+  const found = () => app.doc.count || app.keypoints.searching;
+  const label = () => (go.textContent = found() ? 'Choose a target' : 'Find key points');
+  const go = h('button', { type: 'button', class: 'button', on: { click: () => app.setStep(found() ? 'target' : 'keypoints') } });
   const method = choice('Variant', METHODS, null, (value) => app.transfer.setMethod(value), 'stacked');
   const about = h('p', { class: 'small faint said' });
   const numbers = h('div');
@@ -37,7 +40,7 @@ function build(app) {
     const { transfer: { motion, method: name, pairs }, doc } = app;
     words.textContent = introduction(app);
     go.hidden = Boolean(motion) || pairs.length > 0 || !app.keypoints.hasMotion;
-    go.textContent = doc.count ? 'Choose a target' : 'Find key points';
+    label();
     variants.hidden = !doc.target || !doc.count;
     const chosen = method.querySelector(`[value="${name}"]`);
     if (chosen) chosen.checked = true;
@@ -48,6 +51,7 @@ function build(app) {
     show(noticed, ...warnings(app, motion?.warnings, app.second));
   };
   app.on('doc motion target source rival', update);
+  app.on('busy', label);
   update();
   return h('div', { class: 'step' }, h('h2', {}, 'Transfer'), words, go, numbers, noticed, variants,
     fold('How it works', { load: () => lesson('transfer') }));
