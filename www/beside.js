@@ -76,12 +76,12 @@ export function beside(app, first, make) {
     const values = pose < 0 ? new Float32Array(length / 3) : distances(other.own, other.positions, pose * length, length);
     for (const figure of [app.second, app.third]) figure.paint(['paint_vertices', values, 0, high, MAP]);
     if (pose < 0) {
-      words.textContent = 'The reference pose is the same by every method: play, or go to another pose.';
+      words.textContent = 'In the reference pose all methods agree: play.';
       return;
     }
     const mean = values.reduce((sum, value) => sum + value, 0) / values.length;
     const name = METHODS.find(([id]) => id === other.method)?.[1];
-    words.textContent = `${name}: off by ${ofSize(mean / sequence.diagonal)} of the size here, bright from ${ofSize(high / sequence.diagonal)}`;
+    words.textContent = `${name}: off by ${ofSize(mean / sequence.diagonal)} on average here`;
   };
 
   app.on('rival step target second', arrange);
