@@ -21,13 +21,16 @@ export async function pictureOf(figures, size = null) {
   if (figures.length === 1) return figures[0].picture(size);
   const boxes = size ? halves(size) : boxesOf(figures, devicePixelRatio);
   // All are asked at once: they are to show the same moment.
-  const pictures = await Promise.all(figures.map((figure, i) => figure.picture(size && boxes[i].slice(2))));
+  const pictures = await Promise.all(figures.map((figure, i) => figure.picture(size && boxes[i].slice(2), size && marginsOf(boxes[i], size))));
   const { canvas, put } = together(boxes);
   for (const [i, picture] of pictures.entries()) put(await createImageBitmap(picture), i);
   const blob = await new Promise((resolve) => canvas.toBlob(resolve, 'image/png'));
   if (!blob) throw new Error('The browser could not save the picture.');
   return blob;
 }
+
+/** How far the edges of a whole are from those of a box in it, inwards. */
+const marginsOf = ([x, y, width, height], whole) => [-x, -y, x + width - whole[0], y + height - whole[1]];
 
 const json = (value) => new Blob([`${JSON.stringify(value, null, 2)}\n`], { type: 'application/json' });
 

@@ -549,15 +549,16 @@ export class Stage extends EventTarget {
   /**
    * The picture as it is now, or the figure alone in a picture of another size, as a PNG.
    * @param {[number, number]|null} size width and height in pixels
+   * @param {number[]|null} room of which that picture is a part, as for {@link lie}, in pixels
    * @returns {Promise<Blob>}
    */
-  async picture(size = null) {
+  async picture(size = null, room = null) {
     if (!this.view) throw new Error('There is no picture to save without a GPU.');
     this.#simplify(true);
     const camera = this.view.camera();
     if (size) {
       this.view.set_insets(0, 0, 0, 0);
-      this.view.set_room(new Float32Array());
+      this.view.set_room(Float32Array.from(room ?? [], (margin) => margin / PICTURE_SCALE));
       this.view.resize(size[0] / PICTURE_SCALE, size[1] / PICTURE_SCALE, PICTURE_SCALE);
       if (!this.kept.camera) this.#frameAll();
     }

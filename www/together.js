@@ -25,7 +25,7 @@ export function halves([width, height]) {
 
 /**
  * A canvas in which figures are put together, each in its box. As on the screen, a figure fades in over the one to its
- * left: shadows do not end at an edge.
+ * left or above it: shadows do not end at an edge.
  */
 export function together(boxes) {
   const canvas = blank(Math.max(...boxes.map(([x, , width]) => x + width)), Math.max(...boxes.map(([, y, , height]) => y + height)));
@@ -39,7 +39,7 @@ export function together(boxes) {
       const layer = layers[i].getContext('2d');
       layer.globalCompositeOperation = 'copy';
       layer.drawImage(image, 0, 0, width, height);
-      if (i > 0) fadeIn(layer, boxes[i - 1][0] + boxes[i - 1][2] - boxes[i][0]);
+      if (i > 0) fadeIn(layer, boxes[i - 1], boxes[i]);
       layers.forEach((each, k) => whole.drawImage(each, boxes[k][0], boxes[k][1]));
     },
   };
@@ -47,9 +47,10 @@ export function together(boxes) {
 
 const blank = (width, height) => Object.assign(document.createElement('canvas'), { width, height });
 
-/** Lets what is drawn begin softly over the first pixels from the left. */
-function fadeIn(layer, pixels) {
-  const share = layer.createLinearGradient(0, 0, pixels, 0);
+/** Lets what is drawn in a box begin softly where that lies over the one before. */
+function fadeIn(layer, before, box) {
+  const end = [0, 1].map((axis) => (box[axis] > before[axis] ? before[axis] + before[axis + 2] - box[axis] : 0));
+  const share = layer.createLinearGradient(0, 0, ...end);
   share.addColorStop(0, 'transparent');
   share.addColorStop(1, 'black');
   layer.globalCompositeOperation = 'destination-in';

@@ -183,18 +183,30 @@ fn a_picture_holds_both_figures() {
     let mut page = proposed(Backend::WebGl2, Screen::Still);
     let seam = page.evaluate("document.querySelector('#second').getBoundingClientRect().left");
     let seam = seam.as_f64().unwrap_or_default() as usize;
-    for (asked, size, middle) in [("null", (960, 640), seam), ("[800, 600]", (800, 600), 400)] {
+    let taken = |page: &mut Page, asked: &str| {
         let blob = format!(
             "import(new URL('www/save.js', location.href)).then(({{ pictureOf, shownFigures }}) => pictureOf(shownFigures(sinew.app), {asked}))"
         );
-        let picture = Picture::from_png(&bytes_of(&mut page, &blob));
+        Picture::from_png(&bytes_of(page, &blob))
+    };
+    for (asked, size, middle) in [("null", (960, 640), seam), ("[800, 600]", (800, 600), 400)] {
+        let picture = taken(&mut page, asked);
         assert_eq!((picture.width, picture.height), size, "{asked}");
         // Pins have many hues, clay and ground have one.
         for (left, width) in [(0, middle), (middle, picture.width - middle)] {
             let figure = picture.cut(left, 0, width, picture.height);
             assert!(figure.hues(0.0002) >= 3, "{asked}, from {left}: {} hues", figure.hues(0.0002));
         }
+        let [aside, seam] = [middle / 2, middle].map(|x| picture.cut(x - 4, 0, 8, 8).brightness());
+        assert!(seam >= aside, "{asked}: the ground is darker between the figures, {seam} beside {aside}");
     }
+    page.resize(Screen::Phone);
+    page.evaluate("sinew.app.setPanel(false)");
+    page.wait_until("document.documentElement.hasAttribute('data-stacked') && sinew.state().drawn", 10.0);
+    let picture = taken(&mut page, "null");
+    assert_eq!((picture.width, picture.height), (780, 1688));
+    let [left, right] = [0, 760].map(|x| picture.cut(x, 1200, 20, 20).brightness());
+    assert!(left > 150.0 && (left - right).abs() < 10.0, "the lower figure fades in from above: {left}, {right}");
 }
 
 #[test]
