@@ -269,6 +269,44 @@ fn a_small_loose_piece_keeps_its_shape() {
     assert!(rows.iter().all(|row| row == &rows[0] && !row.is_empty()));
 }
 
+/// A skirt has no pair and no twin on the waving source, whose hands hang beside it: it stays on the hips.
+#[test]
+fn clothes_follow_the_body_beneath() {
+    let recipe = Recipe { name: "person".into(), faces: 4_000, poses: 12, motion: "wave".into(), ..Recipe::default() };
+    let person = zoo::make(&recipe).expect("a person");
+    let (mut faces, mut points) = (person.sequence.faces().to_vec(), person.sequence.reference().to_vec());
+    let (first, around, rows) = (points.len() as u32, 24, 10);
+    for row in 0..rows {
+        let down = f64::from(row) / f64::from(rows - 1);
+        points.extend((0..around).map(|i| {
+            let (sine, cosine) = (f64::from(i) / f64::from(around) * std::f64::consts::TAU).sin_cos();
+            DVec3::new((0.17 + 0.09 * down) * cosine, 1.02 - 0.42 * down, (0.14 + 0.10 * down) * sine)
+        }));
+    }
+    for (row, i) in (1..rows).flat_map(|row| (0..around).map(move |i| (row, i))) {
+        let at = |row: u32, i: u32| first + row * around + i % around;
+        faces.push([at(row, i), at(row - 1, i), at(row, i + 1)]);
+        faces.push([at(row, i + 1), at(row - 1, i), at(row - 1, i + 1)]);
+    }
+    let target = Sequence::new("in a skirt", faces, points, Vec::new()).expect("a mesh");
+    let pairs: Vec<Pair> =
+        far_apart(person.sequence.reference(), 12).into_iter().map(|v| Pair { source: v, target: v }).collect();
+    let poses = by_default(&person.sequence, &target, &pairs).poses(target.reference());
+    let moved = |pose: &[DVec3], rest: &[DVec3], from: usize, to: usize| -> f64 {
+        (from..to).map(|v| pose[v].distance(rest[v])).fold(0.0, f64::max)
+    };
+    let skirt =
+        poses.iter().map(|pose| moved(pose, target.reference(), first as usize, pose.len())).fold(0.0, f64::max);
+    let body = person
+        .sequence
+        .poses()
+        .iter()
+        .map(|pose| moved(&pose.positions, person.sequence.reference(), 0, first as usize))
+        .fold(0.0, f64::max);
+    println!("a skirt moves by {skirt:.3}, a waving hand by {body:.3}");
+    assert!(skirt < 0.1 * body, "{skirt} of {body}");
+}
+
 /// A figure that grows while it walks makes the other one grow as well, and walk as it would.
 #[test]
 fn growth_is_carried_over() {

@@ -6,7 +6,7 @@ pub mod bvh;
 pub mod doctor;
 pub mod dual;
 pub mod face;
-mod groups;
+pub mod groups;
 pub mod laplacian;
 pub mod near;
 pub mod pieces;

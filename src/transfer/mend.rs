@@ -4,7 +4,6 @@
 //! neighbours follow motions that lead far apart, more than anything on the source comes apart, weights are averaged there
 //! until they do not. What is small and loose, such as a button or an eye, keeps its shape.
 
-use super::kd_tree::KdTree;
 use super::rig::blend;
 use super::rig::weights::{Averager, Row, normalised};
 use super::surface::Surface;
@@ -28,8 +27,6 @@ const MOST_AVERAGES: usize = 12;
 const WIDTH: f64 = 1.0;
 /// A piece is small if its box is not longer than this, in radii.
 const SMALL: f64 = 0.1;
-/// Rows that have more than this share in common follow much the same.
-const ALIKE: f64 = 0.5;
 /// Edges shorter than this, in radii, count as so long: slivers tell nothing.
 const SHORT: f64 = 2e-3;
 
@@ -119,24 +116,14 @@ pub fn close(surface: &Surface, rows: &mut [Row], poses: &[&[DAffine3]], allowed
     }
 }
 
-/// Gives all vertices of a small piece one row of at most `most` entries, where there is more than such pieces: what the
-/// surface beneath it follows, if that is much the same as what the piece does by itself, otherwise the mean of its own.
+/// Gives all vertices of a small piece one row of at most `most` entries, where there is more than such pieces.
 pub fn stiffen(surface: &Surface, rows: &mut [Row], most: usize) {
     let small = small_pieces(surface);
-    if small.is_empty() || small.iter().map(Vec::len).sum::<usize>() == surface.len() {
+    if small.iter().map(Vec::len).sum::<usize>() == surface.len() {
         return;
     }
-    let mut large = vec![true; surface.len()];
-    small.iter().flatten().for_each(|&v| large[v as usize] = false);
-    let tree = KdTree::new(&surface.positions.iter().map(DVec3::to_array).collect::<Vec<_>>());
     for piece in small {
-        let beneath = piece.iter().filter_map(|&v| {
-            let at = surface.positions[v as usize].to_array();
-            tree.nearest(&at, |u| large[u as usize]).map(|u| (u, v))
-        });
-        let own = mean(surface, rows, piece.iter().map(|&v| (v, v)), most);
-        let beneath = mean(surface, rows, beneath, most);
-        let row = if common(&own, &beneath) > ALIKE { beneath } else { own };
+        let row = mean(surface, rows, &piece, most);
         piece.iter().for_each(|&v| rows[v as usize].clone_from(&row));
     }
 }
@@ -160,21 +147,15 @@ fn small_pieces(surface: &Surface) -> Vec<Vec<u32>> {
     vertices
 }
 
-/// The mean of rows, each for a vertex whose share of the area counts: `(row, vertex)`.
-fn mean(surface: &Surface, rows: &[Row], of: impl Iterator<Item = (u32, u32)>, most: usize) -> Row {
+/// The mean of the rows of some vertices, by their shares of the area.
+fn mean(surface: &Surface, rows: &[Row], vertices: &[u32], most: usize) -> Row {
     let mut sum = BTreeMap::new();
-    for (row, v) in of {
-        for &(bone, share) in &rows[row as usize] {
+    for &v in vertices {
+        for &(bone, share) in &rows[v as usize] {
             *sum.entry(bone).or_insert(0.0) += surface.mass[v as usize].max(f64::MIN_POSITIVE) * share;
         }
     }
     strongest(sum.into_iter().collect(), most)
-}
-
-/// The share that two rows have in common.
-fn common(a: &Row, b: &Row) -> f64 {
-    let other = |bone: u32| b.iter().find(|entry| entry.0 == bone).map_or(0.0, |entry| entry.1);
-    a.iter().map(|&(bone, share)| share.min(other(bone))).sum()
 }
 
 /// The largest entries of a row, made to sum to 1.

@@ -17,6 +17,7 @@ pub mod gradients;
 pub mod growth;
 pub mod joints;
 pub mod kd_tree;
+pub mod layers;
 pub mod mend;
 mod parameters;
 pub mod posed;

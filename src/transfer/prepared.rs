@@ -5,6 +5,7 @@ use super::biharmonic::{self, carried};
 use super::checked::checked;
 use super::growth::{grown, growth, shrunk};
 use super::joints::Joints;
+use super::layers::{self, Pieces};
 use super::mend;
 use super::registration::{Effort, Foot, Ground, LOST, Pin, Registration, feet};
 use super::rig::Rig;
@@ -207,7 +208,7 @@ impl Prepared {
                 let last = self.last.take().filter(|_| quick);
                 let bent = self.bend(&pairs, &points, alignment, last);
                 steps.end("correspondence", 0.8)?;
-                let (skin, joints) = self.by_bones(alignment, &bent, if quick { FEWER } else { 1 });
+                let (skin, joints) = self.by_bones(alignment, &pairs, &bent, if quick { FEWER } else { 1 });
                 self.last = Some(bent);
                 self.carrier = Some(Carrier::Bones(joints));
                 skin
@@ -262,13 +263,14 @@ impl Prepared {
     }
 
     /// Every `step`th of the telling poses is looked at for tears.
-    fn by_bones(&self, alignment: Alignment, bent: &[DVec3], step: usize) -> (Skin, Joints) {
+    fn by_bones(&self, alignment: Alignment, pairs: &[Pair], bent: &[DVec3], step: usize) -> (Skin, Joints) {
         let feet = feet(&self.source, &self.ground, &self.target, bent);
         let mut rows: Vec<Row> = feet.iter().map(|foot| self.pulled(foot.map(|f| f.0))).collect();
         let lost: Vec<bool> = feet.iter().map(|foot| foot.is_none_or(|f| f.1 > LOST)).collect();
         mend::fill(&self.target, &mut rows, &lost);
         let rounds = (SMOOTHING * self.target.len()).div_ceil(SMOOTHED).clamp(2, MOST_SMOOTHING);
         rows = averaged(&self.target, rows, INFLUENCES, rounds);
+        self.lay(pairs, &feet, &mut rows);
         let joints = |rows: &[Row]| Joints::new(&self.source, &self.rig, &self.target, rows, alignment);
         let first = joints(&rows);
         let seen = self.rig.telling.iter().step_by(step).filter_map(|&pose| self.rig.maps.get(pose));
@@ -280,6 +282,14 @@ impl Prepared {
         let moments = self.rig.maps.iter().zip(&self.growths);
         let maps = moments.map(|(maps, &growth)| self.carried(&joints, maps, growth)).collect();
         (self.skin(self.rig.bones, &rows, maps), joints)
+    }
+
+    /// Clothes of the target follow what lies beneath them.
+    fn lay(&self, pairs: &[Pair], feet: &[Option<(Foot, f64)>], rows: &mut [Row]) {
+        let here = Pieces::new(&self.source, pairs.iter().map(|pair| self.source.place[pair.source as usize]));
+        let there = Pieces::new(&self.target, pairs.iter().map(|pair| self.target.place[pair.target as usize]));
+        let feet: Vec<Option<Foot>> = feet.iter().map(|foot| foot.map(|f| f.0)).collect();
+        layers::lay((&self.source, &self.target), (&here, &there), &feet, rows, INFLUENCES);
     }
 
     /// The maps of the bones on the target, in its own units, of those on the source, which is so many times as large as at

@@ -1,0 +1,169 @@
+//! Clothes: pieces of the target that lie over a body.
+//!
+//! A skirt or a coat has no pair and often no twin on the source: bent onto it, it would stick to whatever is near, to the
+//! hands that hang beside it for one. It follows what lies beneath it on the target itself, as one garment and evened out.
+
+use super::kd_tree::KdTree;
+use super::mend::fill;
+use super::registration::Foot;
+use super::rig::weights::{Averager, Row};
+use super::surface::Surface;
+use crate::mesh::groups::Groups;
+use glam::DVec3;
+use std::collections::{BTreeMap, BTreeSet};
+
+/// A piece lies over others that are no farther on average than this, over the diagonal of its box. (A hand that was cut
+/// off is near the arm at its end only.)
+const NEAR: f64 = 0.2;
+/// So does a piece whose diagonal is not longer than this, in radii, such as a button.
+const SMALL: f64 = 0.1;
+/// How far along a layer what it follows is evened out, over that diagonal: two legs move one skirt.
+const EVEN: f64 = 0.1;
+/// Rounds of averaging for that, the most.
+const MOST_ROUNDS: u32 = 100;
+
+/// Places of a surface by the connected piece that they lie on.
+pub struct Pieces {
+    /// #N the lowest place of the piece.
+    of: Vec<u32>,
+    /// #N whether the piece has a marked place.
+    marked: Vec<bool>,
+}
+
+impl Pieces {
+    /// Of a surface with some marked places.
+    pub fn new(surface: &Surface, marks: impl Iterator<Item = u32>) -> Self {
+        let mut groups = Groups::new(surface.len());
+        for &[a, b, c] in &surface.faces {
+            groups.join(a, b);
+            groups.join(a, c);
+        }
+        let of: Vec<u32> = (0..surface.len() as u32).map(|v| groups.root(v)).collect();
+        let mut held = vec![false; of.len()];
+        marks.for_each(|v| held[of[v as usize] as usize] = true);
+        Self { marked: of.iter().map(|&piece| held[piece as usize]).collect(), of }
+    }
+
+    /// The places of each piece without a mark.
+    fn unmarked(&self) -> Vec<Vec<u32>> {
+        let mut places = vec![Vec::new(); self.of.len()];
+        for (v, &piece) in self.of.iter().enumerate().filter(|(v, _)| !self.marked[*v]) {
+            places[piece as usize].push(v as u32);
+        }
+        places.retain(|piece| !piece.is_empty());
+        places
+    }
+}
+
+/// Gives layers of the target rows of at most `most` entries from what lies beneath them. `pieces` are those of the source
+/// and of the target, marked where there is a pair; `feet` tell where the target lies on the source.
+pub fn lay(
+    (source, target): (&Surface, &Surface),
+    pieces: (&Pieces, &Pieces),
+    feet: &[Option<Foot>],
+    rows: &mut [Row],
+    most: usize,
+) {
+    let twinless =
+        |&v: &u32| feet[v as usize].is_some_and(|foot| pieces.0.marked[source.faces[foot.face as usize][0] as usize]);
+    let mut unmarked = pieces.1.unmarked();
+    unmarked.retain(|piece| 2 * piece.iter().filter(|&v| twinless(v)).count() >= piece.len());
+    if unmarked.is_empty() {
+        return;
+    }
+    let body = Body::new(target, &pieces.1.marked, rows);
+    unmarked.retain(|piece| {
+        let beneath = body.beneath(piece);
+        beneath.iter().flatten().zip(piece).for_each(|(&u, &v)| rows[v as usize] = rows[u as usize].clone());
+        beneath.is_some()
+    });
+    fill(target, rows, &body.strays(&unmarked, rows));
+    unmarked.iter().for_each(|piece| even(target, piece, rows, most));
+}
+
+/// What layers lie on.
+struct Body<'a> {
+    surface: &'a Surface,
+    places: Vec<u32>,
+    tree: KdTree<3>,
+    /// The bones that meet somewhere on it, in both orders, each with itself as well.
+    joined: BTreeSet<[u32; 2]>,
+}
+
+impl<'a> Body<'a> {
+    /// The marked places of a surface, one at least.
+    fn new(surface: &'a Surface, marked: &[bool], rows: &[Row]) -> Self {
+        let places: Vec<u32> = (0..surface.len() as u32).filter(|&v| marked[v as usize]).collect();
+        let points: Vec<[f64; 3]> = places.iter().map(|&v| surface.positions[v as usize].to_array()).collect();
+        let bone: Vec<u32> = rows.iter().map(main_bone).collect();
+        let beside = |&v: &u32| surface.neighbours(v as usize).iter().map(move |&u| (v, u));
+        let joined = places.iter().flat_map(beside).map(|(v, u)| [bone[v as usize], bone[u as usize]]).collect();
+        Self { surface, tree: KdTree::new(&points), places, joined }
+    }
+
+    /// For each place of a piece the place beneath it, if the piece is a layer.
+    fn beneath(&self, piece: &[u32]) -> Option<Vec<u32>> {
+        let at = |v: u32| self.surface.positions[v as usize];
+        let below = |&v: &u32| Some(self.places[self.tree.nearest(&at(v).to_array(), |_| true)? as usize]);
+        let beneath: Vec<u32> = piece.iter().map(below).collect::<Option<_>>()?;
+        let (mut sum, mut mass) = (0.0, 0.0);
+        for (&v, &u) in piece.iter().zip(&beneath) {
+            sum += self.surface.mass[v as usize] * at(v).distance(at(u));
+            mass += self.surface.mass[v as usize];
+        }
+        let diagonal = diagonal(self.surface, piece);
+        (diagonal <= SMALL || sum <= NEAR * diagonal * mass).then_some(beneath)
+    }
+
+    /// #N whether a place of a layer is on a stray patch of it: what lies beneath does not adjoin, on the body, what lies
+    /// beneath the largest patch.
+    fn strays(&self, layers: &[Vec<u32>], rows: &[Row]) -> Vec<bool> {
+        let surface = self.surface;
+        let mut patches = Groups::new(surface.len());
+        for &v in layers.iter().flatten() {
+            for &u in surface.neighbours(v as usize) {
+                if self.joined.contains(&[main_bone(&rows[v as usize]), main_bone(&rows[u as usize])]) {
+                    patches.join(v, u);
+                }
+            }
+        }
+        let mut stray = vec![false; surface.len()];
+        for piece in layers {
+            let mut area = BTreeMap::new();
+            piece.iter().for_each(|&v| *area.entry(patches.root(v)).or_insert(0.0) += surface.mass[v as usize]);
+            let largest = area.iter().max_by(|a, b| a.1.total_cmp(b.1).then(b.0.cmp(a.0))).map(|patch| *patch.0);
+            piece.iter().for_each(|&v| stray[v as usize] = Some(patches.root(v)) != largest);
+        }
+        stray
+    }
+}
+
+/// The strongest bone of a row.
+fn main_bone(row: &Row) -> u32 {
+    row.iter().max_by(|a, b| a.1.total_cmp(&b.1).then(b.0.cmp(&a.0))).map_or(0, |entry| entry.0)
+}
+
+/// Averages the rows along a piece.
+fn even(target: &Surface, piece: &[u32], rows: &mut [Row], most: usize) {
+    let lengths = piece.iter().flat_map(|&v| {
+        target
+            .neighbours(v as usize)
+            .iter()
+            .map(move |&u| target.positions[v as usize].distance(target.positions[u as usize]))
+    });
+    let (count, sum) = lengths.fold((0, 0.0), |(count, sum), length| (count + 1, sum + length));
+    // A step goes an edge at random, half of the time: so many go as far.
+    let steps = EVEN * diagonal(target, piece) * f64::from(count) / f64::max(sum, f64::MIN_POSITIVE);
+    let rounds = (2.0 * steps * steps).ceil().min(f64::from(MOST_ROUNDS)) as usize;
+    let (mut averager, mut next) = (Averager::default(), vec![Row::new(); piece.len()]);
+    for _ in 0..rounds {
+        next.iter_mut().zip(piece).for_each(|(row, &v)| averager.average(target, rows, v as usize, most, row));
+        next.iter_mut().zip(piece).for_each(|(row, &v)| std::mem::swap(row, &mut rows[v as usize]));
+    }
+}
+
+/// The diagonal of the box around places.
+fn diagonal(surface: &Surface, places: &[u32]) -> f64 {
+    let points = || places.iter().map(|&v| surface.positions[v as usize]);
+    points().fold(DVec3::NEG_INFINITY, DVec3::max).distance(points().fold(DVec3::INFINITY, DVec3::min))
+}
