@@ -269,6 +269,22 @@ fn a_small_loose_piece_keeps_its_shape() {
     assert!(rows.iter().all(|row| row == &rows[0] && !row.is_empty()));
 }
 
+/// Where arms hang on one and are spread on the other, a person is told; not where only proportions differ.
+#[test]
+fn different_postures_are_noticed() {
+    let person = creature("person", 4_000);
+    for (name, differ) in [("person-arms-out", true), ("person-broad", false)] {
+        let target = creature(name, 4_000);
+        let found = by_default(&person.sequence, &still(&target.sequence), &pairs(&person, &target, 14));
+        assert_eq!(
+            found.warnings.iter().any(|w| w.code == "different-postures"),
+            differ,
+            "{name}: {:?}",
+            found.warnings
+        );
+    }
+}
+
 /// A skirt has no pair and no twin on the waving source, whose hands hang beside it: it stays on the hips.
 #[test]
 fn clothes_follow_the_body_beneath() {

@@ -9,7 +9,7 @@ use super::alignment::Alignment;
 use super::kd_tree::KdTree;
 use super::rig::Rig;
 use super::rig::blends::{Blend, blends};
-use super::rig::weights::Row;
+use super::rig::weights::{Row, main_bone};
 use super::surface::Surface;
 use glam::{DAffine3, DVec3};
 use nalgebra::{Cholesky, DMatrix, Dyn};
@@ -109,8 +109,7 @@ impl Joints {
 fn join_loose(source: &Surface, rig: &Rig, bones: &[(DVec3, DVec3, f64)], links: &mut Vec<Link>) {
     let strongest = links.iter().map(|link| link.weight).fold(0.0, f64::max);
     let weight = if strongest > 0.0 { LOOSE * strongest } else { LOOSE };
-    let main: Vec<u32> =
-        rig.rows.iter().map(|row| row.iter().max_by(|a, b| a.1.total_cmp(&b.1)).map_or(0, |entry| entry.0)).collect();
+    let main: Vec<u32> = rig.rows.iter().map(main_bone).collect();
     let mut group: Vec<usize> = (0..rig.bones).collect();
     links.iter().for_each(|link| join(&mut group, link.bones));
     // Most rigs are joined already, and need no tree.

@@ -6,7 +6,7 @@
 use super::kd_tree::KdTree;
 use super::mend::fill;
 use super::registration::Foot;
-use super::rig::weights::{Averager, Row};
+use super::rig::weights::{Averager, Row, main_bone};
 use super::surface::Surface;
 use crate::mesh::groups::Groups;
 use glam::DVec3;
@@ -136,11 +136,6 @@ impl<'a> Body<'a> {
         }
         stray
     }
-}
-
-/// The strongest bone of a row.
-fn main_bone(row: &Row) -> u32 {
-    row.iter().max_by(|a, b| a.1.total_cmp(&b.1).then(b.0.cmp(&a.0))).map_or(0, |entry| entry.0)
 }
 
 /// Averages the rows along a piece.

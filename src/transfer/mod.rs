@@ -21,6 +21,7 @@ pub mod layers;
 pub mod mend;
 mod parameters;
 pub mod posed;
+pub mod posture;
 mod prepared;
 pub mod propose;
 pub mod registration;

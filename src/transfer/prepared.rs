@@ -7,6 +7,7 @@ use super::growth::{grown, growth, shrunk};
 use super::joints::Joints;
 use super::layers::{self, Pieces};
 use super::mend;
+use super::posture;
 use super::registration::{Effort, Foot, Ground, LOST, Pin, Registration, feet};
 use super::rig::Rig;
 use super::rig::weights::{Row, averaged, normalised};
@@ -208,7 +209,8 @@ impl Prepared {
                 let last = self.last.take().filter(|_| quick);
                 let bent = self.bend(&pairs, &points, alignment, last);
                 steps.end("correspondence", 0.8)?;
-                let (skin, joints) = self.by_bones(alignment, &pairs, &bent, if quick { FEWER } else { 1 });
+                let step = if quick { FEWER } else { 1 };
+                let (skin, joints) = self.by_bones(alignment, &pairs, &bent, step, &mut warnings);
                 self.last = Some(bent);
                 self.carrier = Some(Carrier::Bones(joints));
                 skin
@@ -263,7 +265,14 @@ impl Prepared {
     }
 
     /// Every `step`th of the telling poses is looked at for tears.
-    fn by_bones(&self, alignment: Alignment, pairs: &[Pair], bent: &[DVec3], step: usize) -> (Skin, Joints) {
+    fn by_bones(
+        &self,
+        alignment: Alignment,
+        pairs: &[Pair],
+        bent: &[DVec3],
+        step: usize,
+        warnings: &mut Vec<Warning>,
+    ) -> (Skin, Joints) {
         let feet = feet(&self.source, &self.ground, &self.target, bent);
         let mut rows: Vec<Row> = feet.iter().map(|foot| self.pulled(foot.map(|f| f.0))).collect();
         let lost: Vec<bool> = feet.iter().map(|foot| foot.is_none_or(|f| f.1 > LOST)).collect();
@@ -281,6 +290,8 @@ impl Prepared {
         let joints = joints(&rows);
         let moments = self.rig.maps.iter().zip(&self.growths);
         let maps = moments.map(|(maps, &growth)| self.carried(&joints, maps, growth)).collect();
+        let rest: Vec<DVec3> = self.target.positions.iter().map(|&p| alignment.invert(p)).collect();
+        warnings.extend(posture::differ(&rest, bent, &rows, &self.target.mass, self.rig.bones));
         (self.skin(self.rig.bones, &rows, maps), joints)
     }
 

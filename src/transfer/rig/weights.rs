@@ -156,6 +156,11 @@ impl Averager {
     }
 }
 
+/// The bone with the largest share.
+pub fn main_bone(row: &Row) -> u32 {
+    row.iter().max_by(|a, b| a.1.total_cmp(&b.1).then(b.0.cmp(&a.0))).map_or(0, |entry| entry.0)
+}
+
 /// Shares that sum to 1.
 pub fn normalised(mut row: Row) -> Row {
     normalise(&mut row);

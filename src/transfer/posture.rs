@@ -1,0 +1,38 @@
+//! Whether two references stand in one posture: arms that hang on one and are spread on the other turn about other axes.
+
+use super::rig::weights::{Row, main_bone};
+use crate::linalg::rigid_fit::{Moments, RigidMotion};
+use crate::warning::Warning;
+use glam::{DMat3, DVec3};
+
+/// A bone that is turned by more than this (radians) stands differently.
+const TURNED: f64 = 0.6;
+/// The share of the surface that may.
+const FEW: f64 = 0.16;
+
+/// Warns if parts of a target are turned far against the source. `rest` and `bent` are #N positions of the target as it
+/// stands and as it lies on the source, in one frame; `rows` and `mass` are its rows of bones and shares of the area.
+pub fn differ(rest: &[DVec3], bent: &[DVec3], rows: &[Row], mass: &[f64], bones: usize) -> Option<Warning> {
+    let mut moments = vec![(Moments::default(), 0.0); bones];
+    for (((&from, &to), row), &mass) in rest.iter().zip(bent).zip(rows).zip(mass) {
+        let (bone, area) = moments.get_mut(main_bone(row) as usize)?;
+        bone.add(mass, from, to);
+        *area += mass;
+    }
+    let turned = moments.iter().filter(|(bone, _)| angle(bone.motion()) > TURNED).map(|bone| bone.1).sum::<f64>();
+    (turned > FEW).then(|| {
+        let message = format!(
+            "the two stand in different postures: {:.0} % of the target is turned by more than {:.0}° against the source, and \
+             moves about other axes than one would expect; “Gradients, posed” (`--method posed`) turns it first",
+            100.0 * turned,
+            TURNED.to_degrees()
+        );
+        Warning::new("different-postures", message)
+    })
+}
+
+/// By how much a motion turns, in radians.
+fn angle(RigidMotion { rotation, .. }: RigidMotion) -> f64 {
+    let DMat3 { x_axis, y_axis, z_axis } = rotation;
+    (0.5 * (x_axis.x + y_axis.y + z_axis.z - 1.0)).clamp(-1.0, 1.0).acos()
+}
