@@ -44,6 +44,15 @@ impl Pieces {
         Self { marked: of.iter().map(|&piece| held[piece as usize]).collect(), of }
     }
 
+    /// #N shares of the area, those of pieces with a mark: together, they are 1.
+    pub fn areas(&self, surface: &Surface) -> Vec<f64> {
+        let mut areas: Vec<f64> = surface.mass.clone();
+        areas.iter_mut().zip(&self.marked).filter(|(_, marked)| !**marked).for_each(|(area, _)| *area = 0.0);
+        let sum: f64 = areas.iter().sum();
+        areas.iter_mut().for_each(|area| *area /= sum.max(f64::MIN_POSITIVE));
+        areas
+    }
+
     /// The places of each piece without a mark.
     fn unmarked(&self) -> Vec<Vec<u32>> {
         let mut places = vec![Vec::new(); self.of.len()];

@@ -11,13 +11,14 @@ const TURNED: f64 = 0.6;
 const FEW: f64 = 0.16;
 
 /// Warns if parts of a target are turned far against the source. `rest` and `bent` are #N positions of the target as it
-/// stands and as it lies on the source, in one frame; `rows` and `mass` are its rows of bones and shares of the area.
-pub fn differ(rest: &[DVec3], bent: &[DVec3], rows: &[Row], mass: &[f64], bones: usize) -> Option<Warning> {
+/// stands and as it lies on the source, in one frame; `rows` and `areas` are its rows of bones and what each place counts,
+/// 1 together.
+pub fn differ(rest: &[DVec3], bent: &[DVec3], rows: &[Row], areas: &[f64], bones: usize) -> Option<Warning> {
     let mut moments = vec![(Moments::default(), 0.0); bones];
-    for (((&from, &to), row), &mass) in rest.iter().zip(bent).zip(rows).zip(mass) {
-        let (bone, area) = moments.get_mut(main_bone(row) as usize)?;
-        bone.add(mass, from, to);
-        *area += mass;
+    for (((&from, &to), row), &area) in rest.iter().zip(bent).zip(rows).zip(areas) {
+        let (bone, sum) = moments.get_mut(main_bone(row) as usize)?;
+        bone.add(area, from, to);
+        *sum += area;
     }
     let turned = moments.iter().filter(|(bone, _)| angle(bone.motion()) > TURNED).map(|bone| bone.1).sum::<f64>();
     (turned > FEW).then(|| {

@@ -279,7 +279,9 @@ impl Prepared {
         mend::fill(&self.target, &mut rows, &lost);
         let rounds = (SMOOTHING * self.target.len()).div_ceil(SMOOTHED).clamp(2, MOST_SMOOTHING);
         rows = averaged(&self.target, rows, INFLUENCES, rounds);
-        self.lay(pairs, &feet, &mut rows);
+        let (here, there) = self.pieces(pairs);
+        let feet: Vec<Option<Foot>> = feet.iter().map(|foot| foot.map(|f| f.0)).collect();
+        layers::lay((&self.source, &self.target), (&here, &there), &feet, &mut rows, INFLUENCES);
         let joints = |rows: &[Row]| Joints::new(&self.source, &self.rig, &self.target, rows, alignment);
         let first = joints(&rows);
         let seen = self.rig.telling.iter().step_by(step).filter_map(|&pose| self.rig.maps.get(pose));
@@ -291,16 +293,15 @@ impl Prepared {
         let moments = self.rig.maps.iter().zip(&self.growths);
         let maps = moments.map(|(maps, &growth)| self.carried(&joints, maps, growth)).collect();
         let rest: Vec<DVec3> = self.target.positions.iter().map(|&p| alignment.invert(p)).collect();
-        warnings.extend(posture::differ(&rest, bent, &rows, &self.target.mass, self.rig.bones));
+        warnings.extend(posture::differ(&rest, bent, &rows, &there.areas(&self.target), self.rig.bones));
         (self.skin(self.rig.bones, &rows, maps), joints)
     }
 
-    /// Clothes of the target follow what lies beneath them.
-    fn lay(&self, pairs: &[Pair], feet: &[Option<(Foot, f64)>], rows: &mut [Row]) {
-        let here = Pieces::new(&self.source, pairs.iter().map(|pair| self.source.place[pair.source as usize]));
-        let there = Pieces::new(&self.target, pairs.iter().map(|pair| self.target.place[pair.target as usize]));
-        let feet: Vec<Option<Foot>> = feet.iter().map(|foot| foot.map(|f| f.0)).collect();
-        layers::lay((&self.source, &self.target), (&here, &there), &feet, rows, INFLUENCES);
+    /// The pieces of the source and of the target, marked where there is a pair.
+    fn pieces(&self, pairs: &[Pair]) -> (Pieces, Pieces) {
+        let here = pairs.iter().map(|pair| self.source.place[pair.source as usize]);
+        let there = pairs.iter().map(|pair| self.target.place[pair.target as usize]);
+        (Pieces::new(&self.source, here), Pieces::new(&self.target, there))
     }
 
     /// The maps of the bones on the target, in its own units, of those on the source, which is so many times as large as at
