@@ -10,7 +10,7 @@ use super::rig::weights::{Averager, Row, main_bone};
 use super::surface::Surface;
 use crate::mesh::groups::Groups;
 use glam::DVec3;
-use std::collections::{BTreeMap, BTreeSet};
+use std::collections::BTreeMap;
 
 /// A piece lies over others that are no farther on average than this, over the diagonal of its box. (A hand that was cut
 /// off is near the arm at its end only.)
@@ -95,8 +95,8 @@ struct Body<'a> {
     surface: &'a Surface,
     places: Vec<u32>,
     tree: KdTree<3>,
-    /// The bones that meet somewhere on it, in both orders, each with itself as well.
-    joined: BTreeSet<[u32; 2]>,
+    /// For each bone and each other, whether they are one or meet somewhere on it.
+    joined: Vec<Vec<bool>>,
 }
 
 impl<'a> Body<'a> {
@@ -106,7 +106,11 @@ impl<'a> Body<'a> {
         let points: Vec<[f64; 3]> = places.iter().map(|&v| surface.positions[v as usize].to_array()).collect();
         let bone: Vec<u32> = rows.iter().map(main_bone).collect();
         let beside = |&v: &u32| surface.neighbours(v as usize).iter().map(move |&u| (v, u));
-        let joined = places.iter().flat_map(beside).map(|(v, u)| [bone[v as usize], bone[u as usize]]).collect();
+        let bones = bone.iter().max().map_or(0, |&most| most as usize + 1);
+        let mut joined: Vec<Vec<bool>> = (0..bones).map(|a| (0..bones).map(|b| a == b).collect()).collect();
+        for (v, u) in places.iter().flat_map(beside) {
+            joined[bone[v as usize] as usize][bone[u as usize] as usize] = true;
+        }
         Self { surface, tree: KdTree::new(&points), places, joined }
     }
 
@@ -131,7 +135,8 @@ impl<'a> Body<'a> {
         let mut patches = Groups::new(surface.len());
         for &v in layers.iter().flatten() {
             for &u in surface.neighbours(v as usize) {
-                if self.joined.contains(&[main_bone(&rows[v as usize]), main_bone(&rows[u as usize])]) {
+                let [a, b] = [v, u].map(|v| main_bone(&rows[v as usize]) as usize);
+                if self.joined[a][b] {
                     patches.join(v, u);
                 }
             }
