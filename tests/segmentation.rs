@@ -158,6 +158,108 @@ fn clothes_belong_to_what_they_cover() {
     assert!(result.parts.len() <= person.parts.len() + 2 && agreement >= 0.9);
 }
 
+/// The faces of boxes between the corners 0 to 7 whose numbers have x, y and z as bits.
+fn box_faces(boxes: usize) -> Vec<[u32; 3]> {
+    let sides = [[0, 1, 3, 2], [4, 6, 7, 5], [0, 4, 5, 1], [2, 3, 7, 6], [0, 2, 6, 4], [1, 5, 7, 3]];
+    let of_box =
+        |k: u32| sides.iter().flat_map(move |&[a, b, c, d]| [[a, b, c], [a, c, d]].map(|f| f.map(|v| 8 * k + v)));
+    (0..boxes as u32).flat_map(of_box).collect()
+}
+
+/// Corner 0 to 7 of a box of side 1 about the origin.
+fn box_corner(corner: usize) -> DVec3 {
+    DVec3::new((corner & 1) as f64, (corner >> 1 & 1) as f64, (corner >> 2) as f64) - 0.5
+}
+
+/// Boxes in a square field of `rows` times `rows`, in ten poses; `motion` maps box and pose to its motion about its middle.
+fn field_of_boxes(rows: usize, motion: impl Fn(usize, f64) -> DAffine3) -> Sequence {
+    let boxes = rows * rows;
+    let middle = |k: usize| 2.0 * DVec3::new((k % rows) as f64, (k / rows) as f64, 0.0);
+    let at = |motion: &dyn Fn(usize) -> DAffine3| {
+        let place = |v: usize| middle(v / 8) + motion(v / 8).transform_point3(box_corner(v % 8));
+        (0..8 * boxes).map(place).collect::<Vec<_>>()
+    };
+    let pose = |t: u32| {
+        let time = f64::from(t);
+        Pose { name: t.to_string(), time, positions: at(&|k| motion(k, time)) }
+    };
+    let reference = at(&|_| DAffine3::IDENTITY);
+    Sequence::new("boxes", box_faces(boxes), reference, (1..=10).map(pose).collect()).expect("boxes")
+}
+
+/// Whatever each does.
+#[test]
+fn boxes_that_move_on_their_own_are_a_part_each() {
+    // Numbers that look random, of the box alone.
+    let of_box = |k: usize, i: usize| ((k + 1) as f64 * [2.0_f64, 3.0, 5.0][i].sqrt()).fract() - 0.5;
+    let way = |k: usize| DVec3::new(of_box(k, 0), of_box(k, 1), of_box(k, 2));
+    let shift = |k: usize, t: f64| DAffine3::from_translation(t.sin() * way(k));
+    let turn = |k: usize, t: f64| DAffine3::from_axis_angle(way(k).normalize(), 0.3 * t);
+    let grow = |k: usize, t: f64| DAffine3::from_scale(DVec3::splat(1.0 + 0.3 * (t + k as f64).sin()));
+    let still = |_: usize, _: f64| DAffine3::IDENTITY;
+    let check = |name: &str, rows: usize, motion: &dyn Fn(usize, f64) -> DAffine3, parts: usize| {
+        let result = by_default(&field_of_boxes(rows, motion));
+        println!(
+            "{name}: {} parts of {} boxes, residual {:.1e}",
+            result.parts.len(),
+            rows * rows,
+            result.rigid_residual
+        );
+        assert_eq!(result.parts.len(), parts, "{name}");
+        assert!(result.rigid_residual < 1e-6, "{name}");
+    };
+    check("shift", 3, &shift, 9);
+    check("turn", 3, &turn, 9);
+    check("grow", 3, &grow, 9);
+    check("one grows", 3, &|k, t| if k == 4 { grow(k, t) } else { still(k, t) }, 2);
+    check("each in its way", 3, &|k, t| [grow(k, t), turn(k, t), shift(k, t)][k % 3], 9);
+    check("all do the same", 10, &|_, t| shift(0, t), 1);
+}
+
+/// A figure that grows has the parts that it has at its size, and one part if it only grows.
+#[test]
+fn growth_makes_no_parts() {
+    let size = |t: usize| 1.0 + 0.1 * t as f64;
+    let grown = |sequence: &Sequence, still: bool| {
+        let rest = sequence.reference();
+        let pose = |(t, pose): (usize, &Pose)| {
+            let positions = if still { rest } else { &pose.positions };
+            Pose { positions: positions.iter().map(|&p| size(t + 1) * p).collect(), ..pose.clone() }
+        };
+        let poses = sequence.poses().iter().enumerate().map(pose).collect();
+        Sequence::new("grown", sequence.faces().to_vec(), rest.to_vec(), poses).expect("a sequence")
+    };
+    for name in ["person", "robot", "snake"] {
+        let creature = creature(name, 4_000, true);
+        let sequence = &creature.sequence;
+        let only_grown = by_default(&grown(sequence, true));
+        assert_eq!(only_grown.parts.len(), 1, "{name}");
+        assert!(only_grown.rigid_residual < 1e-6, "{name}");
+        let (steady, result) = (by_default(sequence), by_default(&grown(sequence, false)));
+        let agreement = agreement(sequence, &result.labels, &creature.labels);
+        println!("{name}: {} parts, grown {} parts, agreement {agreement:.3}", steady.parts.len(), result.parts.len());
+        assert!(result.parts.len().abs_diff(steady.parts.len()) <= 1 && agreement >= 0.95, "{name}");
+    }
+}
+
+/// Noise lengthens every edge, and that is no growth.
+#[test]
+fn noise_is_no_growth() {
+    let person = creature("person", 8_000, false).sequence;
+    let noise = |v: usize, i: usize, t: u32| (((v * 3 + i + 1) as f64 * f64::from(t + 2).sqrt()).sin() * 1e4).fract();
+    let rigid = rigidly_moved(&person);
+    let poses = rigid.poses().iter().zip(0..).map(|(pose, t)| {
+        let shaken = |(v, &p): (usize, &DVec3)| {
+            p + 0.01 * person.diagonal() * DVec3::from_array([0, 1, 2].map(|i| noise(v, i, t)))
+        };
+        Pose { positions: pose.positions.iter().enumerate().map(shaken).collect(), ..pose.clone() }
+    });
+    let shaken = Sequence::new("shaken", person.faces().to_vec(), person.reference().to_vec(), poses.collect());
+    let result = by_default(&shaken.expect("a sequence"));
+    println!("{} parts, residual {:.4}", result.parts.len(), result.rigid_residual);
+    assert!(result.parts.len() == 1 && result.rigid_residual < 0.01);
+}
+
 /// An arm of five rigid links that is nothing but small plates around it.
 #[test]
 fn plates_belong_to_the_limb_they_sit_on() {
@@ -167,14 +269,9 @@ fn plates_belong_to_the_limb_they_sit_on() {
             // Numbers that look random: the fractional parts of multiples of square roots.
             let along = 2.0 * link_of(plate) as f64 + 2.0 * (plate as f64 * 2.0_f64.sqrt()).fract();
             let turn = DMat3::from_rotation_x(TAU * (plate as f64 * 3.0_f64.sqrt()).fract());
-            let corner = DVec3::new((corner & 1) as f64, (corner >> 1 & 1) as f64, (corner >> 2) as f64) - 0.5;
-            DVec3::new(along, 0.0, 0.0) + turn * (DVec3::new(0.0, 0.5, 0.0) + corner * DVec3::new(0.3, 0.1, 0.3))
+            DVec3::new(along, 0.0, 0.0)
+                + turn * (DVec3::new(0.0, 0.5, 0.0) + box_corner(corner) * DVec3::new(0.3, 0.1, 0.3))
         };
-        let sides = [[0, 1, 3, 2], [4, 6, 7, 5], [0, 4, 5, 1], [2, 3, 7, 6], [0, 2, 6, 4], [1, 5, 7, 3]];
-        let faces = (0..plates as u32).flat_map(|plate| {
-            let corner = move |k: u32| 8 * plate + k;
-            sides.iter().flat_map(move |&[a, b, c, d]| [[a, b, c], [a, c, d]].map(|face| face.map(corner)))
-        });
         let reference: Vec<DVec3> = (0..8 * plates).map(|v| place(v / 8, v % 8)).collect();
         let pose = |k: usize| {
             let bend = |link: usize| {
@@ -189,7 +286,7 @@ fn plates_belong_to_the_limb_they_sit_on() {
             Pose { name: format!("{k}"), time: k as f64, positions: positions.collect() }
         };
         let arm =
-            Sequence::new("arm", faces.collect(), reference.clone(), (1..=5).map(pose).collect()).expect("an arm");
+            Sequence::new("arm", box_faces(plates), reference.clone(), (1..=5).map(pose).collect()).expect("an arm");
         let result = by_default(&arm);
         println!("{plates} plates: {} parts, residual {:.1e}", result.parts.len(), result.rigid_residual);
         assert_eq!(result.parts.len(), 5, "{plates} plates");

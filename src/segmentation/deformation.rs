@@ -1,10 +1,9 @@
 //! The distance metric (Eq. 4 and 5): how differently two neighbouring faces deform, and how far apart they are.
 
-use super::gradients::Gradients;
 use super::statistics::{mean, over, quantile};
 use crate::linalg::polar::frobenius_squared;
 use crate::mesh::DualGraph;
-use glam::{DMat3, DVec3};
+use glam::DMat3;
 
 /// Centroids closer than this (at unit diagonal) count as this far apart, so that Eq. 4 stays finite.
 const CLOSEST: f64 = 1e-6;
@@ -16,7 +15,7 @@ const LEAST_STRETCH: f64 = 0.01;
 pub struct Deformation {
     /// #E deformation distances of Eq. 4, `max_t ‖Mᵢ − Mⱼ‖²_F / Geod`, with lengths at unit diagonal.
     pub distances: Vec<f64>,
-    /// #F: how far each face is from moving rigidly by itself, `max_t ‖MᵀM − I‖_F`.
+    /// #F: how far each face is from moving rigidly by itself, `max_t ‖MᵀM − I‖_F`, `M` over the size of its piece.
     pub stretch: Vec<f64>,
 }
 
@@ -26,12 +25,12 @@ impl Deformation {
         Self { distances: vec![0.0; graph.edges().len()], stretch: vec![0.0; graph.face_count()] }
     }
 
-    /// Adds the pose with the given #V positions; `geodesic` are #E distances between centroids.
-    pub fn add_pose(&mut self, gradients: &Gradients<'_>, graph: &DualGraph, geodesic: &[f64], positions: &[DVec3]) {
-        let m = gradients.all(positions);
-        raise_distances(&mut self.distances, graph, geodesic, &m);
-        for (stretch, m) in self.stretch.iter_mut().zip(&m) {
-            let s = frobenius_squared(m.transpose() * *m - DMat3::IDENTITY);
+    /// Adds a pose: #F gradients `m`, each on a piece that is `size` times as large as in the reference pose; `geodesic` are
+    /// #E distances between centroids.
+    pub fn add_pose(&mut self, m: &[DMat3], size: impl Fn(u32) -> f64, graph: &DualGraph, geodesic: &[f64]) {
+        raise_distances(&mut self.distances, graph, geodesic, m);
+        for ((stretch, m), f) in self.stretch.iter_mut().zip(m).zip(0..) {
+            let s = frobenius_squared(m.transpose() * *m / size(f).powi(2) - DMat3::IDENTITY);
             if s > *stretch * *stretch && s.is_finite() {
                 *stretch = s.sqrt();
             }

@@ -1,8 +1,7 @@
 //! The finest parts of the merge tree: the cells around the features, those that do not move rigidly cut in two again
 //! and again. Whatever the thresholds of feature extraction were, every joint then lies between two finest parts.
 
-use super::motion::{self, FaceMotion, PartMoments};
-use crate::linalg::rigid_fit::Moments;
+use super::motion::{self, FaceMotion, PartMoments, PoseMoments};
 use crate::mesh::DualGraph;
 use std::cmp::Reverse;
 use std::collections::BinaryHeap;
@@ -43,7 +42,7 @@ pub fn split_cells(
             labels[f as usize] = fresh;
         }
         for (number, own) in [(cell, stay), (fresh, leave)] {
-            let mut sum = vec![Moments::default(); faces.pose_count()];
+            let mut sum = vec![PoseMoments::default(); faces.pose_count()];
             own.iter().for_each(|&f| faces.add_face(&mut sum, f));
             heap.extend(urgency(&own, &sum, number));
             if number == fresh {

@@ -97,7 +97,7 @@ pub fn cut(finest: usize, merges: &[Merge], wanted: usize) -> (Vec<u32>, usize) 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::linalg::rigid_fit::Moments;
+    use crate::segmentation::motion::PoseMoments;
     use glam::{DMat3, DVec3};
 
     /// Six points in a row; the last two turn about the fourth.
@@ -106,10 +106,10 @@ mod tests {
         let joint = DVec3::new(3.5, 0.0, 0.0);
         (0..6)
             .map(|i| {
-                let mut m = Moments::default();
+                let mut m = PoseMoments::default();
                 for offset in [DVec3::Y, DVec3::Z, DVec3::NEG_Y] {
                     let p = DVec3::new(f64::from(i), 0.0, 0.0) + 0.3 * offset;
-                    m.add(1.0, p, if i > 3 { turn * (p - joint) + joint } else { p });
+                    m.add(1.0, 1.0, p, if i > 3 { turn * (p - joint) + joint } else { p });
                 }
                 vec![m]
             })

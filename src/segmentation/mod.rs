@@ -13,7 +13,8 @@
 //! | §3.4 and Eq. 8, boundary smoothing | `smoothing`, with `max_flow` |
 //!
 //! Beyond the paper ([`Method::Tree`], the default): `finest` parts, the `merge_tree` over them, the `choice` of the
-//! number of parts, and rigid `refinement`.
+//! number of parts, and rigid `refinement`. What grows as a whole (`growth`) counts as rigid at its size, as it does by the
+//! paper's gradients.
 //!
 //! Lengths are taken at unit diagonal of the reference pose's bounding box, without which the paper's thresholds would
 //! depend on the units of the file.
@@ -27,6 +28,7 @@ mod features;
 mod finest;
 mod geometry;
 mod gradients;
+mod growth;
 mod harmonic;
 mod max_flow;
 mod merge_tree;

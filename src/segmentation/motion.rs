@@ -1,13 +1,18 @@
 //! How faces move, as far as rigid parts care: their centroids in the reference pose and in every pose, and the rigid
 //! motions that explain sets of them.
+//!
+//! What grows as a whole is as rigid as before: all its deformation gradients are equal, so that the paper's measure (Eq.
+//! 4) finds nothing to cut there. The motion of a part is therefore rigid at the size that the part has in each pose
+//! ([`super::growth`]), which is 1 for all that only moves.
 
+use super::growth::Growth;
 use crate::linalg::rigid_fit::{Moments, RigidMotion};
-use crate::mesh::face;
+use crate::mesh::{DualGraph, face};
 use crate::sequence::Sequence;
 use glam::{DVec3, Vec3};
 
 /// Coordinates (at unit diagonal) beyond this count as this, so that their squares stay in the range of 32-bit numbers.
-const FAR: f64 = 1e15;
+pub const FAR: f64 = 1e15;
 
 /// Face centroids at unit diagonal, about the middle of the mesh, and the weight of each face.
 pub struct FaceMotion {
@@ -16,14 +21,62 @@ pub struct FaceMotion {
     reference: Vec<Vec3>,
     /// Face by face, #T centroids.
     moved: Vec<Vec3>,
+    growth: Growth,
 }
 
 /// The moments of one part, one set a pose.
-pub type PartMoments = Vec<Moments>;
+pub type PartMoments = Vec<PoseMoments>;
+
+/// What the motion of a part in one pose follows from: additive, as [`Moments`] are.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct PoseMoments {
+    pairs: Moments,
+    /// Σ w |p|²
+    squares: f64,
+    /// Σ w · size of the face's piece in this pose
+    size: f64,
+}
+
+impl PoseMoments {
+    /// Adds a point of weight `w` that the pose carries from `p` to `q`, on a piece that is `size` times as large there.
+    pub fn add(&mut self, w: f64, size: f64, p: DVec3, q: DVec3) {
+        self.pairs.add(w, p, q);
+        self.squares += w * p.length_squared();
+        self.size += w * size;
+    }
+
+    fn merge(&mut self, other: &Self) {
+        self.pairs.merge(&other.pairs);
+        self.squares += other.squares;
+        self.size += other.size;
+    }
+
+    /// The mean size of the part; exactly 1 where nothing grows, the two sums being the same then.
+    fn size(&self) -> f64 {
+        if self.pairs.weight > 0.0 { self.size / self.pairs.weight } else { 1.0 }
+    }
+
+    /// Squared residual of the best rigid motion.
+    pub fn residual(&self) -> f64 {
+        self.residual_at(self.size())
+    }
+
+    /// The same with the part `size` times as large as in the reference pose.
+    pub fn residual_at(&self, size: f64) -> f64 {
+        self.pairs_at(size).residual()
+    }
+
+    /// Moments of the pairs `size·p → q`.
+    fn pairs_at(&self, size: f64) -> Moments {
+        let Moments { weight, p, q, qp, squares } = self.pairs;
+        Moments { weight, p: size * p, q, qp: size * qp, squares: squares + (size * size - 1.0) * self.squares }
+    }
+}
 
 impl FaceMotion {
-    /// Takes the centroids of #F faces of a sequence; `scale` is one over its diagonal.
-    pub fn new(sequence: &Sequence, scale: f64, weight: Vec<f64>) -> Self {
+    /// Takes the centroids of #F faces of a sequence, `graph` being their dual graph; `scale` is one over its diagonal.
+    /// Every face weighs 1.
+    pub fn new(sequence: &Sequence, graph: &DualGraph, scale: f64) -> Self {
         let (faces, poses) = (sequence.faces(), sequence.poses().len());
         let centroids = |positions: &[DVec3]| -> Vec<Vec3> {
             let near = |p: DVec3| (p * scale).clamp(DVec3::splat(-FAR), DVec3::splat(FAR));
@@ -38,7 +91,23 @@ impl FaceMotion {
                 moved[f * poses + t] = c;
             }
         }
-        Self { poses, weight, reference: centroids(sequence.reference()), moved }
+        let (piece, pieces) = graph.pieces();
+        let growth = Growth::none(piece, pieces, poses);
+        let weight = vec![1.0; faces.len()];
+        let mut faces = Self { poses, weight, reference: centroids(sequence.reference()), moved, growth };
+        let moments = faces.moments(faces.growth.pieces(), pieces);
+        faces.growth.measure(sequence, scale, &moments);
+        faces
+    }
+
+    /// Gives #F weights to the faces.
+    pub fn weigh(&mut self, weight: Vec<f64>) {
+        self.weight = weight;
+    }
+
+    /// #T sizes of a face's piece over that in the reference pose.
+    pub fn sizes(&self, face: u32) -> &[f64] {
+        self.growth.of(face)
     }
 
     /// Number of poses.
@@ -63,14 +132,14 @@ impl FaceMotion {
 
     fn add(&self, moments: &mut PartMoments, face: u32, w: f64) {
         let p = self.reference[face as usize].as_dvec3();
-        for (m, q) in moments.iter_mut().zip(self.moved(face)) {
-            m.add(w, p, q.as_dvec3());
+        for ((m, q), &size) in moments.iter_mut().zip(self.moved(face)).zip(self.sizes(face)) {
+            m.add(w, size, p, q.as_dvec3());
         }
     }
 
     /// Weighted moments of the parts `0..parts` under #F labels.
     pub fn weighted_moments(&self, labels: &[u32], parts: usize) -> Vec<PartMoments> {
-        let mut moments = vec![vec![Moments::default(); self.poses]; parts];
+        let mut moments = vec![vec![PoseMoments::default(); self.poses]; parts];
         for (f, &label) in labels.iter().enumerate() {
             self.add_face(&mut moments[label as usize], f as u32);
         }
@@ -79,7 +148,7 @@ impl FaceMotion {
 
     /// Moments of the parts `0..parts` under #F labels, every face counting alike.
     pub fn moments(&self, labels: &[u32], parts: usize) -> Vec<PartMoments> {
-        let mut moments = vec![vec![Moments::default(); self.poses]; parts];
+        let mut moments = vec![vec![PoseMoments::default(); self.poses]; parts];
         for (f, &label) in labels.iter().enumerate() {
             self.add(&mut moments[label as usize], f as u32, 1.0);
         }
@@ -93,9 +162,10 @@ impl FaceMotion {
     }
 }
 
-/// A rigid motion in single precision, for the many evaluations of [`FaceMotion::error`].
+/// A rigid motion of a part at its size, in single precision, for the many evaluations of [`FaceMotion::error`].
 #[derive(Clone, Copy, Debug)]
 pub struct Rigid32 {
+    /// Times the size.
     rotation: glam::Mat3,
     translation: Vec3,
 }
@@ -105,8 +175,9 @@ pub fn best_motion(moments: &PartMoments) -> Vec<Rigid32> {
     moments
         .iter()
         .map(|m| {
-            let RigidMotion { rotation, translation } = m.motion();
-            Rigid32 { rotation: rotation.as_mat3(), translation: translation.as_vec3() }
+            let size = m.size();
+            let RigidMotion { rotation, translation } = m.pairs_at(size).motion();
+            Rigid32 { rotation: (size * rotation).as_mat3(), translation: translation.as_vec3() }
         })
         .collect()
 }
@@ -114,12 +185,12 @@ pub fn best_motion(moments: &PartMoments) -> Vec<Rigid32> {
 /// Squared residual of a part, summed over all poses.
 pub fn residual(moments: &PartMoments) -> f64 {
     // A sum of nothing would be −0.
-    moments.iter().map(Moments::residual).fold(0.0, |sum, r| sum + r)
+    moments.iter().map(PoseMoments::residual).fold(0.0, |sum, r| sum + r)
 }
 
 /// Squared residual of the union of two parts.
 pub fn union_residual(a: &PartMoments, b: &PartMoments) -> f64 {
-    let union = |(x, y): (&Moments, &Moments)| {
+    let union = |(x, y): (&PoseMoments, &PoseMoments)| {
         let mut sum = *x;
         sum.merge(y);
         sum.residual()

@@ -11,7 +11,8 @@ pub struct Segmentation {
     /// The parts.
     pub parts: Vec<Part>,
     /// Rms over faces and poses of the distance of a face's centroid from where its part's best rigid motion puts
-    /// it, over the diagonal of the reference pose.
+    /// it, over the diagonal of the reference pose. Where a piece of the mesh grows as a whole, the motion is rigid at the
+    /// size that the part has in the pose.
     pub rigid_residual: f64,
     /// The same before boundaries were smoothed.
     pub residual_before_smoothing: f64,

@@ -90,7 +90,10 @@ impl Segmenter {
 
         watch.begin("deformation", 0.05)?;
         let gradients = Gradients::new(sequence.faces(), sequence.reference(), scale, graph);
-        let Deformation { distances, stretch } = deformation_over_poses(sequence, &geometry, &gradients, &mut watch)?;
+        let mut faces = FaceMotion::new(sequence, graph, scale);
+        let Deformation { distances, stretch } =
+            deformation_over_poses(sequence, &geometry, &gradients, &faces, &mut watch)?;
+        faces.weigh(deformation::rigidity(&stretch));
         let weights = deformation::edge_weights(&geometry.geodesic, &distances, parameters.delta, scale_of(parameters));
 
         watch.begin("feature faces", 0.3)?;
@@ -105,7 +108,6 @@ impl Segmenter {
         let Clustering { mut rounds, partitions } = clusters(parameters, graph, &weights, &features, &mut keep_going)?;
 
         watch.begin("merge tree", 0.8)?;
-        let faces = FaceMotion::new(sequence, scale, deformation::rigidity(&stretch));
         let labels = rounds.last().cloned().unwrap_or_default();
         let (finest, merges) = match parameters.method {
             Method::Paper => (Finest { labels, count: partitions, residual: 0.0 }, Vec::new()),
@@ -257,13 +259,15 @@ fn deformation_over_poses(
     sequence: &Sequence,
     geometry: &Geometry,
     gradients: &Gradients<'_>,
+    faces: &FaceMotion,
     watch: &mut Stopwatch<'_>,
 ) -> Result<Deformation, SegmentationError> {
     let mut deformation = Deformation::new(&geometry.graph);
     let poses = sequence.poses();
     for (t, pose) in poses.iter().enumerate() {
         watch.tell(0.05 + 0.25 * t as f64 / poses.len() as f64)?;
-        deformation.add_pose(gradients, &geometry.graph, &geometry.geodesic, &pose.positions);
+        let m = gradients.all(&pose.positions);
+        deformation.add_pose(&m, |f| faces.sizes(f)[t], &geometry.graph, &geometry.geodesic);
     }
     Ok(deformation)
 }
