@@ -187,7 +187,7 @@ fn field_of_boxes(rows: usize, motion: impl Fn(usize, f64) -> DAffine3) -> Seque
     Sequence::new("boxes", box_faces(boxes), reference, (1..=10).map(pose).collect()).expect("boxes")
 }
 
-/// Whatever each does.
+/// However many they are, and whatever each does.
 #[test]
 fn boxes_that_move_on_their_own_are_a_part_each() {
     // Numbers that look random, of the box alone.
@@ -213,6 +213,8 @@ fn boxes_that_move_on_their_own_are_a_part_each() {
     check("grow", 3, &grow, 9);
     check("one grows", 3, &|k, t| if k == 4 { grow(k, t) } else { still(k, t) }, 2);
     check("each in its way", 3, &|k, t| [grow(k, t), turn(k, t), shift(k, t)][k % 3], 9);
+    check("a hundred shift", 10, &shift, 100);
+    check("hundreds burst", 17, &|k, t| shift(k, t) * turn(k, t), 289);
     check("all do the same", 10, &|_, t| shift(0, t), 1);
 }
 

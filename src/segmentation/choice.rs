@@ -22,7 +22,8 @@ const MOST: usize = 24;
 const FACES_OF_A_PART: usize = 4;
 
 /// A joint is where one more merge costs so many times as much as the next cheaper one (squared residuals): a clear one
-/// anywhere up to [`MOST_JOINTS`] parts, a fair one only a little beyond the number that is enough.
+/// anywhere up to [`MOST_JOINTS`] parts, or up to as many as there are pieces, a fair one only a little beyond the number
+/// that is enough.
 const CLEAR_JOINT: f64 = 16.0;
 const FAIR_JOINT: f64 = 2.5;
 const MOST_JOINTS: usize = 80;
@@ -36,13 +37,15 @@ pub fn number_of_parts(merges: &[Merge], base: f64, [faces, poses, pieces]: [usi
     let visible = RIGID * RIGID * (faces * poses) as f64;
     let most = (faces / FACES_OF_A_PART).max(pieces).max(1);
     let enough = enough_parts(&residuals(merges, base), visible, most.min(MOST));
+    // Where the finest parts are the pieces, what they leave is what the first merge is compared with.
+    let left = (merges.len() < pieces).then_some(base);
     // costs[k − 1] is the cost of merging from k + 1 to k parts.
-    let costs: Vec<f64> = merges.iter().rev().map(|m| m.cost).collect();
+    let costs: Vec<f64> = merges.iter().rev().map(|m| m.cost).chain(left).collect();
     let jump = |parts: usize| match costs.get(parts - 1) {
         Some(&next) if parts > 1 && costs[parts - 2] > visible => costs[parts - 2] / next.max(0.01 * visible),
         _ => 0.0,
     };
-    let clear = (enough + 1..=most.min(MOST_JOINTS)).rev().find(|&k| jump(k) >= CLEAR_JOINT);
+    let clear = (enough + 1..=most.min(MOST_JOINTS.max(pieces))).rev().find(|&k| jump(k) >= CLEAR_JOINT);
     let beyond = most.min((LITTLE_BEYOND * enough as f64) as usize);
     let fair = || {
         (enough + 1..=beyond)
@@ -90,6 +93,8 @@ mod tests {
         let merges = tree(&[0.1, 0.09, 0.08, 0.07, 0.06, 0.05, 0.04]);
         assert!(number_of_parts(&merges, 0.0, [8, 1000, 1]) <= 2);
         assert_eq!(number_of_parts(&merges, 0.0, [8, 1000, 8]), 8, "eight cards fly on their own");
+        let shards = tree(&[0.1; 299]);
+        assert_eq!(number_of_parts(&shards, 0.0, [3600, 1, 300]), 300, "and so do all the pieces of what burst");
     }
 
     #[test]
