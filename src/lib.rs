@@ -28,6 +28,7 @@ pub mod segmentation;
 pub mod sequence;
 #[cfg(feature = "solvers")]
 pub mod skinning;
+pub mod stopwatch;
 #[cfg(feature = "solvers")]
 pub mod transfer;
 pub mod view;

@@ -29,7 +29,6 @@ mod select;
 mod stages;
 mod surface;
 mod thin;
-mod watch;
 
 pub use parameters::{Parameters, Stop};
 pub use result::{Fitted, KeyPointError, KeyPoints, Replacement, Rounds, Step, Tried};

@@ -1,6 +1,7 @@
 //! What the selection answers.
 
 use crate::skinning::Fit;
+use crate::stopwatch::Cancelled;
 use crate::warning::Warning;
 use crate::weights::{Weights, WeightsError};
 use glam::DAffine3;
@@ -106,4 +107,10 @@ pub enum KeyPointError {
     /// There are no weights for the points.
     #[error(transparent)]
     Weights(#[from] WeightsError),
+}
+
+impl From<Cancelled> for KeyPointError {
+    fn from(_: Cancelled) -> Self {
+        Self::Cancelled
+    }
 }

@@ -8,11 +8,11 @@ use super::poses;
 use super::result::{Fitted, KeyPointError, KeyPoints, Replacement, Step};
 use super::stages;
 use super::surface::Surface;
-use super::watch::Watch;
 use super::{Parameters, Stop};
 use crate::crew::{Crew, Threads, at_once};
 use crate::observer::Observer;
 use crate::sequence::Sequence;
+use crate::stopwatch::Stopwatch;
 use crate::warning::Warning;
 use crate::weights::Weights;
 
@@ -45,7 +45,7 @@ pub async fn select_by(
     observer: &mut dyn Observer,
 ) -> Result<KeyPoints, KeyPointError> {
     parameters.check()?;
-    let mut watch = Watch::new(observer);
+    let mut watch = Stopwatch::new(observer);
     watch.begin("welding", 0.0)?;
     let surface = Surface::new(sequence);
     if surface.faces.is_empty() {
@@ -153,7 +153,7 @@ pub async fn measured(
     points: &[u32],
     estimates: Option<&[f64]>,
     enough: Option<f64>,
-    watch: &mut Watch<'_>,
+    watch: &mut Stopwatch<'_>,
 ) -> Result<Measured, KeyPointError> {
     let mut errors = Vec::new();
     let mut weights = None;
@@ -193,7 +193,7 @@ async fn by_the_letter(
     full: &Full<'_>,
     parameters: &Parameters,
     candidates: &[u32],
-    watch: &mut Watch<'_>,
+    watch: &mut Stopwatch<'_>,
 ) -> Result<Choice, KeyPointError> {
     watch.begin("literal search", 0.05)?;
     let mut curve = Vec::new();

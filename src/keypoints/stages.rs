@@ -12,9 +12,9 @@ use super::result::{KeyPointError, Replacement, Step};
 use super::search::{Search, Set, WORTH};
 use super::select::{Choice, is_enough, measured};
 use super::surface::Surface;
-use super::watch::Watch;
 use super::{Parameters, Stop};
 use crate::crew::Crew;
+use crate::stopwatch::Stopwatch;
 
 /// Vertices of the coarse mesh on which sets are sought, and of the one on which they are settled.
 const COARSE: [usize; 2] = [600, 900];
@@ -55,7 +55,7 @@ pub async fn run(
     found: &[u32],
     full: &Full<'_>,
     parameters: &Parameters,
-    watch: &mut Watch<'_>,
+    watch: &mut Stopwatch<'_>,
 ) -> Result<Choice, KeyPointError> {
     let surface = full.surface;
     let gammas = [parameters.gamma_rotation, parameters.gamma_shear];
@@ -112,7 +112,7 @@ async fn settle<'a>(
     search: &mut Search<'a>,
     finer: &'a Coarse,
     trail: &mut Trail<'_>,
-    watch: &mut Watch<'_>,
+    watch: &mut Stopwatch<'_>,
 ) -> Result<(), KeyPointError> {
     watch.begin("moving points", 0.5)?;
     in_turn(crew, search, Search::shifted, [0.5, 0.57], finer, trail, watch).await?;
@@ -137,7 +137,7 @@ async fn exchange(
     [from, to]: [f64; 2],
     coarse: &Coarse,
     trail: &mut Trail<'_>,
-    watch: &mut Watch<'_>,
+    watch: &mut Stopwatch<'_>,
 ) -> Result<(), KeyPointError> {
     let before = search.state();
     let old = search.set.members.clone();
@@ -173,7 +173,7 @@ async fn in_turn<'a>(
     [from, to]: [f64; 2],
     coarse: &Coarse,
     trail: &mut Trail<'_>,
-    watch: &mut Watch<'_>,
+    watch: &mut Stopwatch<'_>,
 ) -> Result<(), KeyPointError> {
     let count = search.set.members.len();
     let (mut done, mut place, mut left) = (from, 0, ROUNDS * count);

@@ -40,7 +40,6 @@ mod segmenter;
 mod shortest_paths;
 mod smoothing;
 mod statistics;
-mod stopwatch;
 
 pub use parameters::{Method, Parameters, Smoothing};
 pub use result::{Feature, Merge, Part, Segmentation, SegmentationError, Steps};

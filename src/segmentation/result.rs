@@ -1,5 +1,6 @@
 //! What the segmentation answers.
 
+use crate::stopwatch::Cancelled;
 use crate::warning::Warning;
 use serde::Serialize;
 
@@ -105,4 +106,10 @@ pub enum SegmentationError {
         /// What it may be.
         range: &'static str,
     },
+}
+
+impl From<Cancelled> for SegmentationError {
+    fn from(_: Cancelled) -> Self {
+        Self::Cancelled
+    }
 }

@@ -8,13 +8,13 @@ use super::geometry::{Geometry, unit_scale};
 use super::gradients::Gradients;
 use super::motion::{self, FaceMotion};
 use super::statistics::quantile;
-use super::stopwatch::Stopwatch;
 use super::{Feature, Merge, Method, Parameters, Part, Segmentation, SegmentationError, Smoothing, Steps};
 use super::{choice, finest, merge_tree, refinement, smoothing};
 use crate::clock;
 use crate::mesh::DualGraph;
 use crate::observer::Observer;
 use crate::sequence::Sequence;
+use crate::stopwatch::Stopwatch;
 use crate::warning::Warning;
 
 /// Finest parts of the merge tree: enough that every joint lies between two of them.

@@ -1,5 +1,6 @@
 //! Why there is no transfer.
 
+use crate::stopwatch::Cancelled;
 use crate::weights::WeightsError;
 
 /// Why there is no transfer.
@@ -50,4 +51,10 @@ pub enum TransferError {
     /// The observer asked to stop.
     #[error("cancelled")]
     Cancelled,
+}
+
+impl From<Cancelled> for TransferError {
+    fn from(_: Cancelled) -> Self {
+        Self::Cancelled
+    }
 }

@@ -14,10 +14,10 @@ use super::rig::weights::{Row, averaged, normalised};
 use super::spline::Spline;
 use super::surface::Surface;
 use super::{Method, Pair, Parameters, Skin, Transfer, TransferError};
-use crate::clock;
 use crate::observer::Observer;
 use crate::sequence::Sequence;
 use crate::skinning::Fitter;
+use crate::stopwatch::Stopwatch;
 use crate::warning::Warning;
 use crate::weights::{self, Biharmonic, Weights};
 use glam::{DAffine3, DVec3};
@@ -68,27 +68,6 @@ enum Carrier {
     KeyPoints { method: Method, fitter: Box<Fitter>, points: Vec<(DVec3, DVec3)>, alignment: Alignment },
 }
 
-/// Seconds by step, and the observer asked at each.
-struct Steps<'a> {
-    observer: &'a mut dyn Observer,
-    seconds: Vec<(&'static str, f64)>,
-    started: f64,
-}
-
-impl<'a> Steps<'a> {
-    fn new(observer: &'a mut dyn Observer) -> Self {
-        Self { observer, seconds: Vec::new(), started: clock::seconds() }
-    }
-
-    /// Ends a step that brought the whole to `done`.
-    fn end(&mut self, step: &'static str, done: f64) -> Result<(), TransferError> {
-        let now = clock::seconds();
-        self.seconds.push((step, now - self.started));
-        self.started = now;
-        if self.observer.progress(step, done) { Ok(()) } else { Err(TransferError::Cancelled) }
-    }
-}
-
 impl Prepared {
     /// Prepares a source, all of it, and the reference pose of a target.
     pub fn new(
@@ -97,7 +76,7 @@ impl Prepared {
         parameters: &Parameters,
         observer: &mut dyn Observer,
     ) -> Result<Self, TransferError> {
-        let mut steps = Steps::new(observer);
+        let mut steps = Stopwatch::new(observer);
         let acting = source.acting();
         let source = acting.as_ref();
         let surfaces = [(source, "source"), (target, "target")].map(|(sequence, side)| {
@@ -159,7 +138,7 @@ impl Prepared {
             last_weights: None,
             carrier: None,
             warnings,
-            seconds: steps.seconds,
+            seconds: steps.stop(),
         })
     }
 
@@ -199,7 +178,7 @@ impl Prepared {
     }
 
     fn run(&mut self, pairs: &[Pair], quick: bool, observer: &mut dyn Observer) -> Result<Transfer, TransferError> {
-        let mut steps = Steps::new(observer);
+        let mut steps = Stopwatch::new(observer);
         let mut warnings = self.warnings.clone();
         let pairs = checked(&self.source, &self.target, pairs, &mut warnings)?;
         let points: Vec<(DVec3, DVec3)> = pairs.iter().map(|pair| self.points(pair)).collect();
@@ -231,7 +210,7 @@ impl Prepared {
             bones: self.rig.bones,
             source_error: self.rig.error,
             warnings,
-            seconds: steps.seconds,
+            seconds: steps.stop(),
         })
     }
 

@@ -2,12 +2,12 @@
 
 use super::carry::{Scene, carry};
 use super::operator::gradients;
-use crate::clock;
 use crate::linalg::cholesky::NotPositiveDefinite;
 use crate::mesh::bvh::Bvh;
 use crate::observer::Observer;
 use crate::segmentation;
 use crate::sequence::Sequence;
+use crate::stopwatch::Stopwatch;
 use crate::transfer::alignment::{Alignment, align};
 use crate::transfer::checked::checked;
 use crate::transfer::correspondence::{Correspondence, Fit, Quality};
@@ -60,36 +60,6 @@ pub struct Moved {
     pub seconds: Vec<(&'static str, f64)>,
 }
 
-/// Seconds by step, and the observer asked at each.
-struct Steps<'a> {
-    observer: &'a mut dyn Observer,
-    seconds: Vec<(&'static str, f64)>,
-    started: f64,
-    cancelled: bool,
-}
-
-impl<'a> Steps<'a> {
-    fn new(observer: &'a mut dyn Observer) -> Self {
-        Self { observer, seconds: Vec::new(), started: clock::seconds(), cancelled: false }
-    }
-
-    fn at(&mut self, step: &'static str, done: f64) -> bool {
-        self.cancelled |= !self.observer.progress(step, done);
-        !self.cancelled
-    }
-
-    /// Ends a step that brought the whole to `done`.
-    fn end(&mut self, step: &'static str, done: f64) -> Result<(), TransferError> {
-        let now = clock::seconds();
-        match self.seconds.iter_mut().find(|entry| entry.0 == step) {
-            Some(entry) => entry.1 += now - self.started,
-            None => self.seconds.push((step, now - self.started)),
-        }
-        self.started = now;
-        if self.at(step, done) { Ok(()) } else { Err(TransferError::Cancelled) }
-    }
-}
-
 impl Mover {
     /// Prepares a source, all of it, and the reference pose of a target.
     pub fn new(
@@ -98,7 +68,7 @@ impl Mover {
         parameters: &Parameters,
         observer: &mut dyn Observer,
     ) -> Result<Self, TransferError> {
-        let mut steps = Steps::new(observer);
+        let mut steps = Stopwatch::new(observer);
         let acting = source.acting();
         let source = acting.as_ref();
         let still = target.reference_alone();
@@ -118,7 +88,7 @@ impl Mover {
             Vec::new()
         };
         steps.end("parts", 1.0)?;
-        Ok(Self { parameters: parameters.clone(), source: here, target: there, poses, parts, seconds: steps.seconds })
+        Ok(Self { parameters: parameters.clone(), source: here, target: there, poses, parts, seconds: steps.stop() })
     }
 
     /// Seconds of the steps of the preparation.
@@ -128,7 +98,7 @@ impl Mover {
 
     /// Transfers all poses by the given pairs.
     pub fn transfer(&self, pairs: &[Pair], observer: &mut dyn Observer) -> Result<Moved, TransferError> {
-        let mut steps = Steps::new(observer);
+        let mut steps = Stopwatch::new(observer);
         let mut warnings = Vec::new();
         let pairs = checked(&self.source, &self.target, pairs, &mut warnings)?;
         let places = |pair: &Pair| [self.source.place[pair.source as usize], self.target.place[pair.target as usize]];
@@ -192,7 +162,7 @@ impl Mover {
             alignment,
             parts: posture.parts,
             warnings,
-            seconds: steps.seconds,
+            seconds: steps.stop(),
         })
     }
 
