@@ -32,7 +32,7 @@ const median = (list) => [...list].sort((a, b) => a - b)[list.length >> 1];
  * cores for one. Nothing moves meanwhile: drawing without a graphics card would keep all cores busy.
  */
 async function sought(app) {
-  await app.openCreature(SOUGHT);
+  await app.opener.openCreature(SOUGHT);
   const { vertices, poses } = app.sequence.sizes;
   const parameters = { ...app.about.keypoints, points: POINTS };
   const crews = [...new Set([1, most()])];
@@ -56,7 +56,7 @@ async function sought(app) {
 
 /** How long the motion takes to follow a point that is dragged over the target: in the engine, and until the page has it. */
 async function dragged(app) {
-  await app.openCreature({ name: 'horse', ...PAIR });
+  await app.opener.openCreature({ name: 'horse', ...PAIR });
   app.setStep('target');
   await app.target.openTwin({ name: 'camel', ...PAIR });
   while (!app.transfer.motion || app.busy) await new Promise((resolve) => setTimeout(resolve, 50));

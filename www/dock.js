@@ -85,7 +85,7 @@ function partsSlider(app) {
   const own = h('span', { class: 'paper point', title: 'What Sinew would choose' });
   const control = slider({
     label: 'Number of parts', low: 1, high: MOST_PARTS, step: 1, reading: (value) => String(value),
-    input: (value) => app.setParts(value), reset: () => app.setParts(null),
+    input: (value) => app.parts.setCount(value), reset: () => app.parts.setCount(null),
   });
   control.element.classList.add('wide');
   const range = control.element.querySelector('input');

@@ -1,5 +1,5 @@
 /** Files dropped anywhere on the page. */
-import { hasOwn, hasPlaced } from './app.js';
+import { hasOwn, hasPlaced } from './doc.js';
 import { dropped } from './files.js';
 
 /** @param {HTMLElement} veil shown while something is dragged over the page */
@@ -24,7 +24,7 @@ export function drops(veil, app) {
     show(-depth);
     try {
       const files = await dropped(event.dataTransfer);
-      if (files.length) await (onTarget(app, event) ? app.target.openFiles(files) : app.openFiles(files));
+      if (files.length) await (onTarget(app, event) ? app.target.openFiles(files) : app.opener.openFiles(files));
       else app.say('There was no file in what was dropped.');
     } catch {
       app.say('What was dropped could not be read.');

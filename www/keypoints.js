@@ -85,7 +85,7 @@ export class KeyPoints {
   /** Finds them if there are none. */
   begin() {
     const { app } = this;
-    if (app.sequence && !app.opening && !app.doc.points.length && this.hasMotion && !this.searching) this.find();
+    if (app.sequence && !app.opener.underWay && !app.doc.points.length && this.hasMotion && !this.searching) this.find();
   }
 
   /** Whether they are being looked for. */

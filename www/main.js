@@ -1,8 +1,9 @@
 /** Puts the page together: engine, stage, controls; then opens what the address asks for, or the first creature. */
-import { App, hasOwn, hasPlaced } from './app.js';
+import { App } from './app.js';
 import { bench } from './bench.js';
 import { beside } from './beside.js';
 import { dock } from './dock.js';
+import { hasOwn, hasPlaced } from './doc.js';
 import { iconButton, show } from './dom.js';
 import { drops } from './drop.js';
 import { Engine } from './engine.js';
@@ -142,7 +143,7 @@ function openAddress() {
   const unknown = unknownOf(fields, app.about);
   const opened = tour && !fields.zoo ? beginTour(fields, tour) : enter(fields, () => {
     const address = query.get('src');
-    return address ? openOr(address, optionsOf(fields, app.about)) : app.openCreature(recipeOf(fields, app.about) ?? {});
+    return address ? openOr(address, optionsOf(fields, app.about)) : app.opener.openCreature(recipeOf(fields, app.about) ?? {});
   });
   if (tour && fields.zoo) app.guide.resume(...tour);
   opened.then(() => unknown && app.notice?.kind !== 'error' && app.say(unknown, 'news')).catch((error) => app.say(error.message));
@@ -162,22 +163,22 @@ async function beginTour(fields, [id, stop]) {
   const left = app.doc;
   applyLink(fields, app);
   app.setPanel(!embedded);
-  if (!(await app.guide.begin(id, stop, left))) await app.openCreature({});
+  if (!(await app.guide.begin(id, stop, left))) await app.opener.openCreature({});
 }
 
 /** Opens a file that is a whole project. */
 async function openProject({ state, source, target }) {
   const fields = readLink(state);
   const options = { ...app.about.options, ...source.options };
-  await enter(fields, () => (source.files.length ? app.openFiles(source.files, options) : app.openCreature(recipeOf(fields, app.about) ?? {})),
+  await enter(fields, () => (source.files.length ? app.opener.openFiles(source.files, options) : app.opener.openCreature(recipeOf(fields, app.about) ?? {})),
     { files: target.files, options: { ...app.about.options, ...target.options } });
 }
 
 /** Opens what `?src=` names, or the first creature with a word about what went wrong. */
 async function openOr(address, options) {
-  if ((await app.openAddress(address, options)) || app.sequence) return;
+  if ((await app.opener.openAddress(address, options)) || app.sequence) return;
   const { notice } = app;
-  await app.openCreature({});
+  await app.opener.openCreature({});
   if (notice) app.say(notice.text);
 }
 
@@ -230,7 +231,7 @@ window.sinew = {
     plain: stage.pace.plain,
     frame: Math.round(stage.pace.took),
   }),
-  open: (files) => app.openFiles(chosen(files)),
+  open: (files) => app.opener.openFiles(chosen(files)),
   /** The page's state, to look into. */
   app,
   bench: () => bench(app),

@@ -10,7 +10,7 @@ const MOST_FILES = 100_000;
 
 /** @param {import('./app.js').App} app @returns {Promise<Blob|null>} */
 export async function writeProject(app, timeline) {
-  const bytes = await app.exportParts();
+  const bytes = await app.parts.export();
   const glb = bytes && readGlb(bytes);
   if (!glb) return null;
   const own = [['source', app.source], ['target', app.doc.target?.source]].filter(([, source]) => source?.files);

@@ -57,13 +57,13 @@ export function reportFile(app) {
 
 /** The moving creature with a material for each part. */
 export async function saveParts(app) {
-  const bytes = await app.exportParts();
+  const bytes = await app.parts.export();
   if (bytes) saveBlob(new Blob([bytes], { type: 'model/gltf-binary' }), `${fileName(app)}.glb`);
 }
 
 /** The creature as a skin with a joint for each part, and what that loses in words. */
 export async function saveRigid(app) {
-  const made = await app.exportRigid();
+  const made = await app.parts.exportRigid();
   if (!made) return;
   saveBlob(new Blob([made.bytes], { type: 'model/gltf-binary' }), `${fileName(app)}-rigid.glb`);
   app.say(`The rigid skin is off by ${ofSize(made.rms)} of its size, by ${ofSize(made.error)} at most.`, 'news');

@@ -36,7 +36,7 @@ export class Target {
 
   /** @param {{name: string, blob: Blob}[]} files @param {object|null} options null: whatever the files are */
   async openFiles(files, options = null, places) {
-    if (!options && (await this.app.tookProject(files))) return true;
+    if (!options && (await this.app.opener.tookProject(files))) return true;
     const source = { kind: 'files', files, options: { ...this.app.about.options, ...options } };
     return this.#open(source, () => collect(files, source.options), places);
   }
@@ -64,7 +64,7 @@ export class Target {
   async openPair(source, target) {
     const recipes = [source, target].map((name) => ({ ...this.app.about.recipe, name }));
     const pairs = await this.#pairs(...recipes);
-    if (pairs && (await this.app.openCreature(recipes[0], { afresh: true }))) await this.#openWith(recipes[1], pairs);
+    if (pairs && (await this.app.opener.openCreature(recipes[0], { afresh: true }))) await this.#openWith(recipes[1], pairs);
   }
 
   /** Opens a creature beside the one that is open, with the true pairs between them. */

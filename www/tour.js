@@ -1,5 +1,5 @@
 /** A guided tour as one takes it: the card over the panel, and the list of tours. */
-import { hasOwn, isOwn } from './app.js';
+import { hasOwn, isOwn } from './doc.js';
 import { h, show } from './dom.js';
 import { countOf, viewNow } from './stages.js';
 import { METHODS } from './steps/methods.js';
@@ -17,13 +17,13 @@ export class Guide {
     this.tour = null;
     this.stop = 0;
     this.going = 0;
-    /** Where the visitor was with files of their own; null: there were none. @type {{doc: import('./app.js').Doc, step: string, views: object}|null} */
+    /** Where the visitor was with files of their own; null: there were none. @type {{doc: import('./doc.js').Doc, step: string, views: object}|null} */
     this.left = null;
     /** The figures of the tour, as they are being opened. */
     this.opened = Promise.resolve();
   }
 
-  /** Begins a tour at a stop, on its own figure. @param {import('./app.js').Doc} [left] what it takes the place of */
+  /** Begins a tour at a stop, on its own figure. @param {import('./doc.js').Doc} [left] what it takes the place of */
   async begin(id, stop = 0, left = this.app.doc) {
     const { app } = this;
     const tour = tourNamed(id);
@@ -35,7 +35,7 @@ export class Guide {
     app.setLessons(true);
     app.changed('tour');
     const turn = ++this.going;
-    this.opened = target ? app.target.openPair(zoo, target) : app.openCreature({ name: zoo, ...(faces && { faces }) }, { afresh: true });
+    this.opened = target ? app.target.openPair(zoo, target) : app.opener.openCreature({ name: zoo, ...(faces && { faces }) }, { afresh: true });
     if ((await this.opened) === false) return false;
     if (turn !== this.going) return true;
     if (this.left) app.say('What you had open is there again when you leave the tour.', 'news');

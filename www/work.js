@@ -4,6 +4,9 @@
  */
 import { Cancelled } from './engine.js';
 
+/** A change during a run that will take longer than this (seconds) stops the run. */
+export const WORTH_STOPPING = 1;
+
 export class Work {
   /** @param {{changed: () => void, say: (text: string) => void}} hear */
   constructor({ changed, say }) {

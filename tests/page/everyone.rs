@@ -137,7 +137,7 @@ fn a_crashed_engine_costs_one_question_and_nothing_else() {
     for what in ["source", "parts", "step", "view", "points", "selected", "undo"] {
         assert_eq!(after[what], before[what], "{what}");
     }
-    page.evaluate("void sinew.app.setParts(5)");
+    page.evaluate("void sinew.app.parts.setCount(5)");
     page.wait_until(&format!("sinew.state().parts === 5 && {IDLE}"), 20.0);
 }
 
@@ -258,8 +258,8 @@ fn what_the_page_finds_stays_whichever_way_one_goes() {
     let mut page = opened(Backend::WebGl2, Screen::Still, SMALL);
     // The parts are taken back while the search for key points is on its way.
     page.evaluate(
-        "sinew.app.setStep('keypoints'); sinew.app.setParts(3); sinew.app.setParts(4);
-        window.dispatchEvent(new Event('change')); sinew.app.setParts(5); sinew.app.undo()",
+        "sinew.app.setStep('keypoints'); sinew.app.parts.setCount(3); sinew.app.parts.setCount(4);
+        window.dispatchEvent(new Event('change')); sinew.app.parts.setCount(5); sinew.app.undo()",
     );
     page.wait_until(&format!("sinew.state().points > 0 && sinew.state().parts === 4 && {IDLE}"), 60.0);
     let found = page.state()["points"].clone();

@@ -127,7 +127,7 @@ fn everything_is_undone_and_redone() {
         "sinew.app.keypoints.setCount(3)",
         "sinew.app.transfer.setMethod('relative')",
         "sinew.app.keypoints.remove(2)",
-        "void sinew.app.setParts(5)",
+        "void sinew.app.parts.setCount(5)",
         "sinew.app.target.close()",
     ];
     let mut states = vec![page.evaluate(DOCUMENT)];

@@ -145,8 +145,9 @@ fn a_project_holds_the_visitors_own_files() {
 fn what_is_taken_away_comes_back() {
     let mut page = opened(Backend::WebGl2, Screen::Still, "#v1;zoo=horse;faces=3000;poses=8;t=2");
     let residual = page.state()["residual"].as_f64().unwrap_or(f64::NAN);
-    let made =
-        page.evaluate("sinew.app.exportRigid().then(({ bytes, error, rms }) => (window.rigid = bytes, [error, rms]))");
+    let made = page.evaluate(
+        "sinew.app.parts.exportRigid().then(({ bytes, error, rms }) => (window.rigid = bytes, [error, rms]))",
+    );
     let (error, rms) = (made[0].as_f64().unwrap_or(f64::NAN), made[1].as_f64().unwrap_or(f64::NAN));
     println!("rigid skin: rms {rms:.5}, largest {error:.5}, residual of the parts {residual:.5}");
     assert!(

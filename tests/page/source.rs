@@ -76,7 +76,7 @@ fn a_full_memory_ends_in_a_sentence() {
     page.wait_until("sinew.state().source.name.includes('hinge') && sinew.state().parts && !sinew.state().busy", 60.0);
     let opened = page.state();
     assert_ne!(opened["source"], before["source"]);
-    page.evaluate_within("sinew.app.reopen({ sampling: { rate: 6000 } }).then(() => 0)", 60.0);
+    page.evaluate_within("sinew.app.opener.reopen({ sampling: { rate: 6000 } }).then(() => 0)", 60.0);
     let error = page.state()["error"].to_string();
     assert!(error.contains("12003 poses") && error.contains("take fewer poses"), "{error}");
     // What no estimate foresees: more bytes than a wasm module can have. The page itself would not let them through.
@@ -95,7 +95,7 @@ fn a_full_memory_ends_in_a_sentence() {
         assert_eq!(after[what], opened[what], "{what}");
     }
     page.evaluate("sinew.app.dismiss()");
-    page.evaluate("void sinew.app.setParts(4)");
+    page.evaluate("void sinew.app.parts.setCount(4)");
     page.wait_until("sinew.state().parts === 4 && !sinew.state().busy && !sinew.state().error", 30.0);
 }
 
@@ -209,7 +209,7 @@ fn a_broken_engine_costs_one_step() {
     assert!(error.contains("started afresh") && error.contains("Nothing that was open is lost"), "{error}");
     page.expect_problem("The worker broke");
     page.evaluate("sinew.app.dismiss()");
-    page.evaluate("void sinew.app.setParts(3)");
+    page.evaluate("void sinew.app.parts.setCount(3)");
     page.wait_until("sinew.state().parts === 3 && !sinew.state().busy", 20.0);
     let after = page.state();
     assert_eq!((&after["source"], &after["error"]), (&before["source"], &serde_json::Value::Null));
@@ -217,7 +217,7 @@ fn a_broken_engine_costs_one_step() {
 
 /// Whether a point is where it was, on both sides.
 const PLACES: &str = "JSON.stringify(sinew.app.doc.points.map(({ source, target, state }) => [source, target, state]))";
-const STILL: &str = "sinew.app.result && !sinew.state().busy && !sinew.app.opening && sinew.state().drawn";
+const STILL: &str = "sinew.app.result && !sinew.state().busy && !sinew.app.opener.underWay && sinew.state().drawn";
 
 /// A hinge of the visitor's own, and a target on which every point is placed.
 fn placed() -> Page {
@@ -240,7 +240,7 @@ fn points_are_placed_once_for_all_poses_of_a_mesh() {
     let mut page = placed();
     let places = page.evaluate(PLACES);
     let before = page.state();
-    page.evaluate("void sinew.app.reopen({ sampling: { rate: 6 } })");
+    page.evaluate("void sinew.app.opener.reopen({ sampling: { rate: 6 } })");
     page.wait_until(
         &format!("sinew.state().source.poses < {} && sinew.state().moves && {STILL}", before["source"]["poses"]),
         30.0,
@@ -267,7 +267,7 @@ fn undo_reopens_what_was_open() {
     let mut page = placed();
     let (places, before) = (page.evaluate(PLACES), page.state());
     for opening in [
-        "void sinew.app.openCreature({ name: 'snake', faces: 3000 })",
+        "void sinew.app.opener.openCreature({ name: 'snake', faces: 3000 })",
         "void sinew.app.target.openPair('snake', 'hand')",
         "location.hash = '#v1;zoo=snake;faces=3000'",
     ] {

@@ -28,8 +28,8 @@ function parameter(app, name) {
     ...definition,
     id: `lesson-${name}`,
     reading: (value) => reading(definition, value),
-    change: (value) => app.setParameter(name, value),
-    reset: () => app.setParameter(name, null),
+    change: (value) => app.parts.setParameter(name, value),
+    reset: () => app.parts.setParameter(name, null),
   });
   control.element.classList.add('lesson-control');
   return {
@@ -63,13 +63,13 @@ const MAKERS = {
     return [histogram(weight, {
       value: epsilon,
       read: (value) => `ε = ${number(value)}`,
-      choose: (value) => app.setParameter('epsilon', fitting('epsilon', value)),
+      choose: (value) => app.parts.setParameter('epsilon', fitting('epsilon', value)),
     }, `Faces by the weight of their heaviest edge; ε = ${number(epsilon)}`),
     h('p', { class: 'small faint' }, 'Faces by their heaviest link, logarithmic. Drag ε.')];
   },
   cost(app) {
     const { curve, parts } = app.result;
-    return [costCurve(curve, parts.length, (count) => app.setParts(count), 'Cost of losing a part, by number of parts')];
+    return [costCurve(curve, parts.length, (count) => app.parts.setCount(count), 'Cost of losing a part, by number of parts')];
   },
   ranking(app) {
     const step = app.doc.run?.steps[placeIn(app, candidates)];

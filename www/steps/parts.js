@@ -51,7 +51,7 @@ function curvePlot(app) {
   // What stands still loses nothing.
   if (!app.sequence.sizes.poses) return [];
   const { curve, parts } = app.result;
-  const plot = costCurve(curve, parts.length, (count) => app.setParts(count), 'Cost of losing a part, by number of parts');
+  const plot = costCurve(curve, parts.length, (count) => app.parts.setCount(count), 'Cost of losing a part, by number of parts');
   return plot ? [h('h3', {}, 'What one part less costs'), plot,
     h('p', { class: 'small faint' }, 'Added residual, logarithmic, over the number of parts. Click to choose.')] : [];
 }
@@ -73,7 +73,7 @@ function weightPlot(app) {
   const plot = histogram(weight, {
     value: epsilon,
     read: (value) => `ε = ${number(value)}`,
-    choose: (value) => app.setParameter('epsilon', fitting('epsilon', value)),
+    choose: (value) => app.parts.setParameter('epsilon', fitting('epsilon', value)),
   }, `Faces by the weight of their heaviest dual edge; ε = ${number(epsilon)}`);
   if (!plot) return [h('p', { class: 'small faint' }, 'Nothing deforms: every face moves with its neighbours.')];
   return [plot, h('p', { class: 'small faint' },
@@ -114,16 +114,16 @@ function parameterFold(app) {
     const control = slider({
       ...definition,
       reading: (value) => reading(definition, value),
-      change: (value) => app.setParameter(definition.name, value),
-      reset: () => app.setParameter(definition.name, null),
+      change: (value) => app.parts.setParameter(definition.name, value),
+      reset: () => app.parts.setParameter(definition.name, null),
     });
     return { definition, control };
   });
-  const method = choice('Method', METHODS, null, (value) => app.setParameter('method', value), 'stacked');
-  const smoothing = select('Smooth boundaries', SMOOTHINGS, null, (value) => app.setParameter('smoothing', value));
-  const exact = toggle('Exact distances', false, (on) => app.setParameter('exact', on),
+  const method = choice('Method', METHODS, null, (value) => app.parts.setParameter('method', value), 'stacked');
+  const smoothing = select('Smooth boundaries', SMOOTHINGS, null, (value) => app.parts.setParameter('smoothing', value));
+  const exact = toggle('Exact distances', false, (on) => app.parts.setParameter('exact', on),
     'Average distances from all pairs of faces instead of from landmarks. Slow: made to check the fast answer.');
-  const reset = h('button', { type: 'button', class: 'text-button', on: { click: () => app.resetParameters() } }, 'Reset all');
+  const reset = h('button', { type: 'button', class: 'text-button', on: { click: () => app.parts.resetParameters() } }, 'Reset all');
   const update = () => {
     const { parameters, changes, result } = app;
     for (const { definition, control } of sliders) {

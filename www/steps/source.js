@@ -45,7 +45,7 @@ function build(app) {
       source.kind === 'zoo' ? creatureOptions(app) : isGltf(app) && animationOptions(app));
     health.update();
     show(gallery, choice('Creature', app.about.creatures.map((name) => [name, title(name)]),
-      source.kind === 'zoo' ? source.recipe.name : null, (name) => app.openCreature({ name })));
+      source.kind === 'zoo' ? source.recipe.name : null, (name) => app.opener.openCreature({ name })));
   };
   app.on('source', update);
   update();
@@ -60,7 +60,7 @@ function build(app) {
 function fileButton(app) {
   const input = h('input', { type: 'file', multiple: true, accept: ACCEPT, class: 'hidden', id: 'files', on: {
     change: () => {
-      if (input.files.length) app.openFiles(chosen(input.files));
+      if (input.files.length) app.opener.openFiles(chosen(input.files));
       input.value = '';
     },
   } });
@@ -73,10 +73,10 @@ function creatureOptions(app) {
   const motions = app.about.motions[app.about.creatures.indexOf(recipe.name)] ?? [];
   return h('div', { class: 'stack' },
     motions.length > 1 && select('Motion', motions.map((name) => [name, title(name)]), recipe.motion || motions[0],
-      (motion) => app.openCreature({ ...recipe, motion: motion === motions[0] ? '' : motion })),
+      (motion) => app.opener.openCreature({ ...recipe, motion: motion === motions[0] ? '' : motion })),
     select('Detail', sizes.map((faces) => [String(faces), plural(faces, 'face')]), String(recipe.faces),
-      (faces) => app.openCreature({ ...recipe, faces: Number(faces) })),
-    toggle('One bone for each vertex', recipe.exact, (exact) => app.openCreature({ ...recipe, exact }),
+      (faces) => app.opener.openCreature({ ...recipe, faces: Number(faces) })),
+    toggle('One bone for each vertex', recipe.exact, (exact) => app.opener.openCreature({ ...recipe, exact }),
       'Every vertex follows exactly one bone, so that the true parts are known exactly'));
 }
 
@@ -87,11 +87,11 @@ function animationOptions(app) {
   const rates = [...new Set([...RATES, ...(rate ? [rate] : [])])].sort((a, b) => a - b);
   return h('div', { class: 'stack' },
     clips.length > 0 && select('Clip', clips.map(({ name, seconds }, i) => [String(i), `${/^\d+$/.test(name) ? `Clip ${i + 1}` : name} · ${duration(seconds)}`]),
-      String(clip), (index) => app.reopen({ clip: index })),
+      String(clip), (index) => app.opener.reopen({ clip: index })),
     select('Poses', [...rates.map((value) => [String(value), `${value} a second`]), ['keys', 'at every key']],
-      rate ? String(rate) : 'keys', (value) => app.reopen({ sampling: value === 'keys' ? 'keys' : { rate: Number(value) } })),
-    select('Reference', REFERENCES, options.reference, (reference) => app.reopen({ reference })),
-    toggle('Weld seams', options.weld, (weld) => app.reopen({ weld }), 'Join vertices that agree in every pose'));
+      rate ? String(rate) : 'keys', (value) => app.opener.reopen({ sampling: value === 'keys' ? 'keys' : { rate: Number(value) } })),
+    select('Reference', REFERENCES, options.reference, (reference) => app.opener.reopen({ reference })),
+    toggle('Weld seams', options.weld, (weld) => app.opener.reopen({ weld }), 'Join vertices that agree in every pose'));
 }
 
 /** A creature has a name, a file its own. */
