@@ -186,8 +186,7 @@ export class App extends EventTarget {
     if (before.target !== doc.target) this.transfer.forget();
     this.target.react(before, doc);
     // The motion first: it is looked at, what the points weigh is read.
-    if (entered) this.transfer.move();
-    else this.transfer.react(before, doc);
+    this.transfer.react(before, doc);
     this.keypoints.react(before, doc);
     this.changed('doc', 'link');
     if (before.changes !== doc.changes) this.changed('parameters');
@@ -298,7 +297,7 @@ export class App extends EventTarget {
     const view = viewOf(this.step, this.view);
     // A stage may move the source in its own way; any other lets it go.
     if (!view.moves) this.release();
-    if (stepNamed(this.step).pair && this.target.sequence && !stepNamed(this.step).points) PAIR_VIEWS[0].paint(this);
+    if (this.looksAtPair) PAIR_VIEWS[0].paint(this);
     else if (stepNamed(this.step).points || this.result) view.paint(this, placeIn(this, view));
     else {
       this.stage.boundaries = false;
@@ -307,8 +306,14 @@ export class App extends EventTarget {
     this.changed('painted');
   }
 
+  /** Whether both figures are shown, as they are. */
+  get looksAtPair() {
+    const { pair, points } = stepNamed(this.step);
+    return Boolean(pair && !points && this.target.sequence);
+  }
+
   get looksAtParts() {
-    return viewOf(this.step, this.view) === PARTS_VIEW;
+    return !this.looksAtPair && viewOf(this.step, this.view) === PARTS_VIEW;
   }
 
   // Work and words.

@@ -45,7 +45,7 @@ export class Transfer {
   }
 
   react(before, after) {
-    const same = before.target === after.target && before.method === after.method && before.count === after.count && before.points === after.points;
+    const same = before.open === after.open && before.target === after.target && before.method === after.method && before.count === after.count && before.points === after.points;
     if (!same && after.target) this.move();
   }
 
