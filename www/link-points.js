@@ -2,6 +2,7 @@
  * Key points and their places in a link: `points=12,407,…` are vertices of the source, `pairs=33,~81,,…` those of the
  * target in the same order, with `~` before one that is only proposed and nothing where there is none.
  */
+import { OPENING } from './history.js';
 import { fresh, MOST_POINTS } from './keypoints.js';
 
 const PROPOSED = '~';
@@ -67,9 +68,8 @@ export async function goToPoints(app, { points, selected, landmarks }, recipe, t
   if (recipe || target?.files.length) {
     // The target is open first, so that nothing has to be proposed that the link knows.
     const places = (size) => known.map((point) => (point.target < size ? point : fresh(point.source)));
-    const wanted = known.length ? places : undefined;
-    if (!(await (recipe ? app.target.openCreature(recipe, wanted) : app.target.openFiles(target.files, target.options, wanted)))) return;
-    app.history.restart(app.doc);
+    const how = { places: known.length ? places : undefined, mark: OPENING };
+    if (!(await (recipe ? app.target.openCreature(recipe, how) : app.target.openFiles(target.files, target.options, how)))) return;
   }
   if (known.length && selected >= 0) app.select(selected);
 }

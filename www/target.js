@@ -28,20 +28,23 @@ export class Target {
     return this.app.doc.target?.sequence ?? null;
   }
 
-  /** @param {(vertices: number) => import('./keypoints.js').Point[]} [places] the points, where they are known */
-  openCreature(recipe, places) {
+  /**
+   * @param {{places?: (vertices: number) => import('./keypoints.js').Point[], mark?: string|null}} [how] `places`: the
+   *   points, where they are known; `mark`: of {@link import('./history.js').History.edit}
+   */
+  openCreature(recipe, how) {
     const source = { kind: 'zoo', recipe: { ...this.app.about.recipe, ...recipe } };
-    return this.#open(source, async () => ({ recipe: source.recipe }), places);
+    return this.#open(source, async () => ({ recipe: source.recipe }), how);
   }
 
   /** @param {{name: string, blob: Blob}[]} files @param {object|null} options null: whatever the files are */
-  async openFiles(files, options = null, places) {
+  async openFiles(files, options = null, how) {
     if (!options && (await this.app.opener.tookProject(files))) return true;
     const source = { kind: 'files', files, options: { ...this.app.about.options, ...options } };
-    return this.#open(source, () => collect(files, source.options), places);
+    return this.#open(source, () => collect(files, source.options), how);
   }
 
-  async #open(source, payload, places) {
+  async #open(source, payload, { places, mark = null } = {}) {
     const { app } = this;
     const sequence = await app.work.run('target', source.kind === 'zoo' ? 'making the creature' : 'reading', async (progress) => {
       const message = await payload();
@@ -52,8 +55,7 @@ export class Target {
     this.known = sequence;
     app.engine.keepTarget(sequence);
     const points = places?.(sequence.sizes.vertices) ?? app.doc.points.map(({ source: vertex }) => fresh(vertex));
-    // Places that are known come with the source.
-    app.edit({ target: { source, sequence }, points, ...(places && { count: points.length, run: null }) }, places ? OPENING : null);
+    app.edit({ target: { source, sequence }, points, ...(places && { count: points.length, run: null }) }, mark);
     return true;
   }
 
@@ -79,8 +81,10 @@ export class Target {
   }
 
   #openWith(recipe, pairs) {
-    return this.openCreature(recipe, () => Array.from(pairs.source, (vertex, i) =>
-      Object.freeze({ source: vertex, target: pairs.target[i], state: 'placed', confidence: 1, given: true })));
+    const places = () => Array.from(pairs.source, (vertex, i) =>
+      Object.freeze({ source: vertex, target: pairs.target[i], state: 'placed', confidence: 1, given: true }));
+    // The places come with the source.
+    return this.openCreature(recipe, { places, mark: OPENING });
   }
 
   close() {
