@@ -1,5 +1,5 @@
 /** The timeline: play, pause, scrub, speed, the reference pose. Time is counted in poses. */
-import { h, icon, iconButton, show, svg } from './dom.js';
+import { h, icon, show, svg } from './dom.js';
 import { number } from './format.js';
 
 /** Poses a second where the files have no time. */
