@@ -73,8 +73,8 @@ export class App extends EventTarget {
     this.keypoints = new KeyPoints(this);
     this.target = new Target(this);
     this.transfer = new Transfer(this);
-    // The picture may come after the parts, or come again.
-    stage.addEventListener('canvas', () => this.parts.takeColours());
+    // The picture may come after the parts, or come again; where there is none, the colours come all the same.
+    for (const event of ['canvas', 'no-gpu']) stage.addEventListener(event, () => this.parts.takeColours());
   }
 
   changed(...what) {
@@ -263,10 +263,10 @@ export class App extends EventTarget {
     this.changed('hovered');
   }
 
-  /** The colour of a key point, an sRGB triple; undefined where there is no GPU. */
+  /** The colour of a key point, an sRGB triple; undefined before it is known. */
   pinColour(index) {
-    if (!this.pinColours?.length) this.pinColours = this.stage.view ? this.stage.pinColours(MOST_POINTS) : null;
-    return this.pinColours?.slice(3 * index, 3 * index + 3);
+    if (!this.pinColours?.length) this.pinColours = this.stage.pinColours(MOST_POINTS);
+    return this.pinColours.length ? this.pinColours.slice(3 * index, 3 * index + 3) : undefined;
   }
 
   /** Lets the figures move. */

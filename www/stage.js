@@ -8,7 +8,7 @@
  */
 import { h } from './dom.js';
 import { Pace } from './pace.js';
-import init, { Viewport } from '../pkg/page.js';
+import init, { part_colours as partColours, pin_colours as pinColours, Viewport } from '../pkg/page.js';
 
 export { link } from './linked.js';
 
@@ -33,6 +33,8 @@ const CALM = matchMedia('(prefers-reduced-motion: reduce)');
 
 /** The wasm; it and the frames are started once for all pictures. @type {Promise<any>|null} */
 let bundle = null;
+/** Whether it is there. */
+let loaded = false;
 
 /** The pictures that are drawn. @type {Set<Stage>} */
 const open = new Set();
@@ -77,6 +79,7 @@ export class Stage extends EventTarget {
       requestAnimationFrame(Stage.#frame);
     }
     await bundle;
+    loaded = true;
     await this.#build();
     if (this.closing.signal.aborted) return;
     const watch = setInterval(() => this.#watch(), LOOK_FOR_LOSS_EVERY);
@@ -511,9 +514,9 @@ export class Stage extends EventTarget {
     return this.kept.mesh && this.view ? this.view.pick_pin(x, y, reach) : undefined;
   }
 
-  /** sRGB triples of the first colours of pins. Each is the same however many there are. */
+  /** sRGB triples of the first colours of pins, each the same however many there are; empty before they are known. */
   pinColours(count) {
-    return this.view?.pin_colours(count) ?? new Uint8Array();
+    return loaded ? pinColours(count) : new Uint8Array();
   }
 
   /** sRGB triples of the groups that are painted. */
@@ -536,9 +539,12 @@ export class Stage extends EventTarget {
     return this.kept.mesh && this.view ? this.view.pick(x, y) : undefined;
   }
 
-  /** The colours of the parts, sRGB triples; empty where there is no GPU. */
+  /** The colours of the parts that were painted, sRGB triples, with a picture or without; empty before either is known. */
   get partColours() {
-    return this.view?.part_colours() ?? new Uint8Array();
+    if (this.view) return this.view.part_colours();
+    const { mesh, paint } = this.kept;
+    const parts = paint.findLast(([method]) => method === 'paint_parts');
+    return loaded && mesh && parts ? partColours(mesh.faces, parts[1]) : new Uint8Array();
   }
 
   /** 256 sRGB triples of a colour map. */

@@ -6,6 +6,7 @@
 //! have, seen by the eyes that tell them apart worst.
 
 use super::colour::{Srgb, least_distance, oklch};
+use crate::mesh::DualGraph;
 
 /// Number of hues around the circle.
 const HUES: usize = 12;
@@ -112,6 +113,18 @@ impl Palette {
         }
         best.0
     }
+}
+
+/// A colour for each of the parts `labels` (#F part numbers) of a mesh with these faces.
+pub fn part_colours(faces: &[[u32; 3]], labels: &[u32]) -> Vec<Srgb> {
+    let parts = labels.iter().max().map_or(0, |&last| last as usize + 1);
+    let mut neighbours = vec![Vec::new(); parts];
+    for (a, b) in DualGraph::new(faces).touching(labels) {
+        neighbours[a as usize].push(b as usize);
+        neighbours[b as usize].push(a as usize);
+    }
+    let palette = Palette::default();
+    palette.assign(&neighbours, &[]).into_iter().map(|slot| palette.colour(slot)).collect()
 }
 
 #[cfg(test)]

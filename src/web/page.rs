@@ -1,4 +1,4 @@
-//! The page's bundle: one class, `Viewport`, a canvas with a figure on it.
+//! The page's bundle: one class, `Viewport`, a canvas with a figure on it; and the colours that there are without one.
 //!
 //! Lengths are CSS pixels from the canvas's top left corner. What cannot be done is thrown as one sentence.
 
@@ -6,6 +6,7 @@ use crate::view::colormap::ColourMap;
 use crate::view::gpu::Renderer;
 use crate::view::gpu::device::{Backend, Gpu};
 use crate::view::motion::{Moment, Motion};
+use crate::view::palette;
 use crate::view::pins;
 use crate::view::stage::Stage;
 use js_sys::{Error, Float32Array, Function, Reflect, Uint8Array};
@@ -285,12 +286,6 @@ impl Viewport {
         self.stage.pick_pin(x, y, reach)
     }
 
-    /// Three sRGB bytes for each of the first `count` pin colours.
-    pub fn pin_colours(&self, count: u32) -> Uint8Array {
-        let bytes: Vec<u8> = (0..count).flat_map(pins::colour).collect();
-        Uint8Array::from(&bytes[..])
-    }
-
     /// Three sRGB bytes for each part.
     pub fn part_colours(&self) -> Uint8Array {
         Uint8Array::from(self.stage.paint.part_colours().as_flattened())
@@ -451,6 +446,23 @@ impl Viewport {
         }
         self.renderer.set_earlier(earlier);
     }
+}
+
+/// Three sRGB bytes for each of the first `count` pin colours.
+#[wasm_bindgen]
+pub fn pin_colours(count: u32) -> Uint8Array {
+    Uint8Array::from((0..count).flat_map(pins::colour).collect::<Vec<u8>>().as_slice())
+}
+
+/// Three sRGB bytes for each of the parts `labels` (#F part numbers) of a mesh with these faces (#F × 3), where there is
+/// no picture of it.
+#[wasm_bindgen]
+pub fn part_colours(faces: &[u32], labels: &[u32]) -> Result<Uint8Array, JsValue> {
+    let faces = faces.as_chunks().0;
+    if faces.len() != labels.len() {
+        return Err(sentence("The parts are those of another mesh."));
+    }
+    Ok(Uint8Array::from(palette::part_colours(faces, labels).as_flattened()))
 }
 
 fn colour_map_named(name: &str) -> Result<ColourMap, JsValue> {

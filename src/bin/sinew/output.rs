@@ -3,10 +3,9 @@
 use crate::Refusal;
 use serde_json::Value;
 use sinew::export::glb;
-use sinew::mesh::DualGraph;
 use sinew::sequence::Sequence;
-use sinew::view::colour::{Srgb, srgb_to_linear};
-use sinew::view::palette::Palette;
+use sinew::view::colour::srgb_to_linear;
+use sinew::view::palette::part_colours;
 use std::fmt::Display;
 use std::io::Write;
 use std::path::Path;
@@ -31,22 +30,10 @@ pub fn write_report(path: &Path, report: &Value) -> Result<(), Refusal> {
     write(path, format!("{report:#}\n"))
 }
 
-/// A colour for each part in the palette of the page, `labels` being #F part numbers.
-pub fn colours(sequence: &Sequence, labels: &[u32]) -> Vec<Srgb> {
-    let parts = labels.iter().max().map_or(0, |&last| last as usize + 1);
-    let mut neighbours = vec![Vec::new(); parts];
-    for (a, b) in DualGraph::new(sequence.faces()).touching(labels) {
-        neighbours[a as usize].push(b as usize);
-        neighbours[b as usize].push(a as usize);
-    }
-    let palette = Palette::default();
-    palette.assign(&neighbours, &vec![None; parts]).into_iter().map(|slot| palette.colour(slot)).collect()
-}
-
 /// Writes a moving mesh painted by its parts in the colours of the page, `labels` being #F part numbers and `names` the
 /// parts' names.
 pub fn write_glb(path: &Path, sequence: &Sequence, labels: &[u32], names: &[String]) -> Result<(), Refusal> {
     let linear = |colour| srgb_to_linear(colour).to_array();
-    let colours: Vec<[f32; 3]> = colours(sequence, labels).into_iter().map(linear).collect();
+    let colours: Vec<[f32; 3]> = part_colours(sequence.faces(), labels).into_iter().map(linear).collect();
     write(path, glb::named_parts(sequence, labels, &colours, names))
 }

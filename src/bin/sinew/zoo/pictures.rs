@@ -2,8 +2,9 @@
 
 use super::unknown;
 use crate::Refusal;
-use crate::output::{self, colours};
+use crate::output;
 use crate::picture::{Eye, Model, Picture, draw};
+use sinew::view::palette::part_colours;
 use sinew::zoo::{Creature, NAMES, Recipe, make, motions, title};
 use std::fmt::Write;
 use std::path::Path;
@@ -101,7 +102,7 @@ fn strip(creature: &Creature) -> Picture {
 }
 
 fn paint(creature: &Creature, points: &[glam::DVec3], eye: &Eye, [width, height]: [usize; 2]) -> Picture {
-    let colours = colours(&creature.sequence, &creature.labels);
+    let colours = part_colours(creature.sequence.faces(), &creature.labels);
     let faces = creature.sequence.faces();
     let open = creature.plan == "cloth";
     draw(&Model { points, faces, labels: &creature.labels, colours: &colours, open }, eye, width, height)
