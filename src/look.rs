@@ -5,6 +5,8 @@ use serde_json::{Map, Value};
 
 /// Normals whose cosine is above this belong to one smooth surface.
 const SMOOTH: f32 = 0.999;
+/// A vertex is compared with so many others in its place at most, or a place with very many would take very long.
+pub(crate) const MOST_COMPARED: usize = 64;
 
 /// The look of a mesh, as its file says it and a glTF takes it again.
 ///
@@ -62,8 +64,10 @@ impl Look {
         for v in 0..normals.len() {
             let place = numbers[v] as usize;
             let mut shade = last[place];
+            let mut compared = 0;
             while shade != NONE && normals[v].dot(normals[shade as usize]) <= SMOOTH {
-                shade = before[shade as usize];
+                compared += 1;
+                shade = if compared < MOST_COMPARED { before[shade as usize] } else { NONE };
             }
             if shade == NONE {
                 before[v] = std::mem::replace(&mut last[place], v as u32);

@@ -4,7 +4,7 @@
 #[allow(dead_code, unused_imports)]
 mod gltf_maker;
 
-use gltf_maker::triangle;
+use gltf_maker::{PNG, triangle};
 use serde_json::Value;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output};
@@ -276,6 +276,34 @@ fn transfer_by_faces_reads_lines_and_compares_methods() {
     let output = sinew(&folder, &common);
     assert_eq!(output.status.code(), Some(2));
     assert!(String::from_utf8_lossy(&output.stderr).contains("its first line says 9"));
+}
+
+#[test]
+fn a_target_keeps_the_materials_that_lie_beside_it() {
+    let outside = folder("materials");
+    let folder = folder("materials/inside");
+    strip(&folder);
+    std::fs::create_dir_all(folder.join("skins")).unwrap();
+    std::fs::write(folder.join("skins/a.png"), PNG).unwrap();
+    std::fs::write(outside.join("secret.png"), [PNG, b"secret"].concat()).unwrap();
+    let strip = std::fs::read_to_string(folder.join("rest.obj")).unwrap();
+    let dressed =
+        strip.replace("f 1", "mtllib skins/list.mtl\nvt 0 0\nusemtl a\nf 1/1").replace("f 2", "usemtl b\nf 2/1");
+    std::fs::write(folder.join("target.obj"), dressed).unwrap();
+    let absolute = outside.join("secret.png").canonicalize().unwrap();
+    for beyond in ["../../secret.png", &absolute.display().to_string()] {
+        let list = format!("newmtl a\nmap_Kd a.png\nnewmtl b\nmap_Kd {beyond}\n");
+        std::fs::write(folder.join("skins/list.mtl"), list).unwrap();
+        std::fs::write(folder.join("pairs.cons"), "2\n0, 0\n6, 6\n").unwrap();
+        let line = "transfer rest.obj pose.2.obj --target target.obj --pairs pairs.cons --out out.glb";
+        let output = sinew(&folder, &line.split(' ').collect::<Vec<_>>());
+        assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+        let made = std::fs::read(folder.join("out.glb")).unwrap();
+        let document = gltf::Gltf::from_slice(&made).unwrap();
+        assert_eq!(document.materials().filter_map(|material| material.name()).collect::<Vec<_>>(), ["a", "b"]);
+        assert_eq!(document.images().count(), 1, "only what lies below the folder is read");
+        assert!(!made.windows(6).any(|bytes| bytes == b"secret"));
+    }
 }
 
 #[test]

@@ -7,6 +7,8 @@ const MOST_DOWNLOAD = 256 << 20;
 
 /** What is often dropped in vain, and where it is made. */
 const FOREIGN = /\.(fbx|blend|dae|usd[acz]?|3ds|max|ma|mb|c4d|bvh|abc|x3d|vrm|pmx)$/i;
+/** What only says how a mesh looks; it is found by its name. */
+const FOR_LOOKS = /\.(mtl|png|jpe?g)$/i;
 const READABLE = /\.(glb|gltf|obj|off|ply|stl|zip)$/i;
 
 const megabytes = (bytes) => `${Math.round(bytes / (1 << 20))} MB`;
@@ -50,9 +52,9 @@ const readAll = (files) => Promise.all(files.map(async ({ name, blob }) => {
   }
 }));
 
-/** The same files under names that put them before their poses. */
+/** The same files, the meshes among them under names that put them before their poses. */
 export const resting = (files) =>
-  files.map(({ name, blob }) => ({ name: name.replace(/(\.[^./]*)?$/, ' rest$1'), blob }));
+  files.map(({ name, blob }) => ({ name: FOR_LOOKS.test(name) ? name : name.replace(/(\.[^./]*)?$/, ' rest$1'), blob }));
 
 /** Everything in a drop, folders included. Must be called before the event handler returns. */
 export function dropped(transfer) {

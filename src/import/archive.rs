@@ -8,12 +8,12 @@ pub use super::zip::is_zip;
 
 /// Ends of the names of files that no mesh needs: pictures, sounds, texts.
 const NOT_NEEDED: &[&str] = &[
-    "gif", "bmp", "tga", "tif", "tiff", "hdr", "exr", "ktx", "basis", "dds", "mtl", "txt", "md", "pdf", "html", "xml",
-    "mp3", "wav", "mp4", "blend", "fbx", "svg",
+    "gif", "bmp", "tga", "tif", "tiff", "hdr", "exr", "ktx", "basis", "dds", "txt", "md", "pdf", "html", "xml", "mp3",
+    "wav", "mp4", "blend", "fbx", "svg",
 ];
 
-/// Ends of the names of images that only a look needs.
-const IMAGES: &[&str] = &["png", "jpg", "jpeg", "webp", "ktx2"];
+/// Ends of the names of files that only a look needs: images, and the materials of an OBJ.
+const FOR_LOOKS: &[&str] = &["png", "jpg", "jpeg", "webp", "ktx2", "mtl"];
 
 /// The files in an archive that a mesh may need, in a folder named like it. What they will take is added up before
 /// anything is unpacked, and each is unpacked to the size that was announced and no further.
@@ -38,14 +38,14 @@ pub fn unpack(archive: &File, look: bool, budget: &mut Budget) -> Result<Vec<Fil
     wanted.into_iter().map(unpack).collect()
 }
 
-/// Whether a file in a folder or an archive may be needed to read a mesh: not a sound or a text, a picture only for its
-/// look, and not what file managers leave behind.
+/// Whether a file in a folder or an archive may be needed to read a mesh: not a sound or a text, a picture or a
+/// list of materials only for its look, and not what file managers leave behind.
 pub fn may_be_needed(name: &str, look: bool) -> bool {
     if is_hidden(name) {
         return false;
     }
     let end = name.rsplit_once('.').map(|(_, end)| end.to_ascii_lowercase());
-    end.is_none_or(|end| !NOT_NEEDED.contains(&end.as_str()) && (look || !IMAGES.contains(&end.as_str())))
+    end.is_none_or(|end| !NOT_NEEDED.contains(&end.as_str()) && (look || !FOR_LOOKS.contains(&end.as_str())))
 }
 
 /// A name, short enough for a sentence.

@@ -5,6 +5,7 @@
 //! is wrong.
 
 mod archive;
+mod beside;
 pub mod gltf;
 mod limits;
 mod natural;
@@ -21,6 +22,7 @@ mod zip;
 
 pub use archive::may_be_needed;
 pub use natural::natural_order;
+pub use obj::needed as needed_for_look;
 
 use crate::look::Look;
 use crate::sequence::Sequence;
@@ -50,7 +52,7 @@ pub struct Options {
     pub reference: Reference,
     /// Join vertices that agree in every pose (glTF only: seams of UVs and normals; STL is welded in any case).
     pub weld: bool,
-    /// Read what the mesh looks like, too (glTF only).
+    /// Read what the mesh looks like, too (glTF and OBJ only).
     pub look: bool,
 }
 
@@ -173,7 +175,7 @@ pub fn open_more(still: &[File], more: &[File], options: &Options) -> Result<(Im
         && !moving.meshes.iter().any(|(file, _)| last_part(&file.name) == last_part(&resting.0.name))
     {
         let all: Vec<_> = [resting].into_iter().chain(&moving.meshes).copied().collect();
-        match numbered::open(&all) {
+        match numbered::open(&all, None) {
             Ok(joined) if all.len() > 1 && !joined.warnings.iter().any(|w| w.code == numbered::DIFFERENT) => {
                 return Ok((joined, true));
             }
@@ -240,7 +242,7 @@ fn open_listed(order: &[&File], files: &[File], options: &Options) -> Result<Imp
             first.name, second.name
         ))),
         ([], []) => Err(ImportError(nothing_to_read(files))),
-        ([], meshes) => numbered::open(meshes),
+        ([], meshes) => numbered::open(meshes, options.look.then_some(files)),
     }
 }
 

@@ -25,24 +25,27 @@ pub enum Format {
 /// The warning that files name other vertices in their faces.
 pub const DIFFERENT: &str = "different-faces";
 
-/// Reads files as poses: the first is the reference, the others its poses in the given order.
-pub fn open(files: &[(&File, Format)]) -> Result<Imported, ImportError> {
+/// Reads files as poses: the first is the reference, the others its poses in the given order. What the reference looks
+/// like is looked for `beside` it, if that is given.
+pub fn open(files: &[(&File, Format)], beside: Option<&[File]>) -> Result<Imported, ImportError> {
     let Some((first, poses)) = files.split_first() else {
         return Err(ImportError("no OBJ, OFF, PLY or STL file was given".into()));
     };
     let name = &first.0.name;
     let mut warnings = Vec::new();
-    let mut reference = read(first)?;
+    let mut said = beside.filter(|_| first.1 == Format::Obj).map(|beside| (obj::Said::new(name), beside));
+    let mut reference = read(first, said.as_mut().map(|(said, _)| said))?;
     let (mut faces, mut polygons) = reference.triangulate();
     if faces.is_empty() {
         return Err(ImportError(format!("{name} has no faces; Sinew needs a surface, not only points")));
     }
     Budget::new(name).poses(reference.positions.len() as u64, files.len() as u64)?;
+    let look = said.and_then(|(said, beside)| said.look(name, beside, &reference, (&faces, &polygons)));
     note_polygons(&reference, &polygons, &mut warnings);
     let mut others = Vec::with_capacity(poses.len());
     let mut different = Vec::new();
     for (k, file) in poses.iter().enumerate() {
-        let mesh = read(file)?;
+        let mesh = read(file, None)?;
         check_pose(name, &reference, &file.0.name, &mesh)?;
         if mesh.len() > 0 && !mesh.same_polygons(&reference) {
             different.push(file.0.name.clone());
@@ -82,12 +85,12 @@ pub fn open(files: &[(&File, Format)]) -> Result<Imported, ImportError> {
     if cut {
         sequence = sequence.with_polygons(polygons).map_err(wrong)?;
     }
-    Ok(Imported { sequence, clips: Vec::new(), clip: None, input_faces, look: None, warnings })
+    Ok(Imported { sequence, clips: Vec::new(), clip: None, input_faces, look, warnings })
 }
 
-fn read((file, format): &(&File, Format)) -> Result<PolygonMesh, ImportError> {
+fn read((file, format): &(&File, Format), said: Option<&mut obj::Said>) -> Result<PolygonMesh, ImportError> {
     let mesh = match format {
-        Format::Obj => obj::read(&file.name, &file.bytes),
+        Format::Obj => obj::read(&file.name, &file.bytes, said),
         Format::Off => off::read(&file.name, &file.bytes),
         Format::Ply => ply::read(&file.name, &file.bytes),
         Format::Stl => stl::read(&file.name, &file.bytes),

@@ -1,13 +1,18 @@
-//! Wavefront OBJ: vertices and polygons. Groups, materials, texture coordinates, normals, vertex colours, lines
-//! and points are passed over.
+//! Wavefront OBJ: vertices and polygons; materials, texture coordinates and normals where the look is asked for. Groups,
+//! vertex colours, lines and points are passed over.
+
+mod look;
+mod mtl;
+
+pub use look::{Said, needed};
 
 use super::ImportError;
 use super::polygons::PolygonMesh;
 use super::text::{Lines, words};
 use glam::DVec3;
 
-/// Reads an OBJ file.
-pub fn read(name: &str, bytes: &[u8]) -> Result<PolygonMesh, ImportError> {
+/// Reads an OBJ file; what it says of its look is told to `said`.
+pub fn read(name: &str, bytes: &[u8], mut said: Option<&mut Said>) -> Result<PolygonMesh, ImportError> {
     let mut lines = Lines::new(name, bytes);
     let mut mesh = PolygonMesh::new(name);
     let mut joined = Vec::new();
@@ -19,18 +24,28 @@ pub fn read(name: &str, bytes: &[u8]) -> Result<PolygonMesh, ImportError> {
             continue;
         }
         if joined.is_empty() {
-            statement(&lines, line, &mut mesh)?;
+            statement(&lines, line, &mut mesh, &mut said)?;
         } else {
             joined.extend_from_slice(line);
-            statement(&lines, &std::mem::take(&mut joined), &mut mesh)?;
+            statement(&lines, &std::mem::take(&mut joined), &mut mesh, &mut said)?;
         }
     }
-    statement(&lines, &joined, &mut mesh)?;
+    statement(&lines, &joined, &mut mesh, &mut said)?;
     Ok(mesh)
 }
 
-fn statement(lines: &Lines, line: &[u8], mesh: &mut PolygonMesh) -> Result<(), ImportError> {
+fn statement(
+    lines: &Lines,
+    line: &[u8],
+    mesh: &mut PolygonMesh,
+    said: &mut Option<&mut Said>,
+) -> Result<(), ImportError> {
+    let whole = line.trim_ascii();
     let line = line.split(|&b| b == b'#').next().unwrap_or_default();
+    if let Some(said) = said {
+        // Names may have a # in them.
+        said.hear(if whole.starts_with(b"usemtl") || whole.starts_with(b"mtllib") { whole } else { line });
+    }
     let mut words = words(line);
     match words.next() {
         Some(b"v") => {
@@ -66,7 +81,7 @@ mod tests {
     fn reads_what_exporters_write() {
         let text = b"\xef\xbb\xbf# a comment\r\nmtllib x.mtl\r\no thing\r\nv 0 0 0 1 0 0\r\nv 1 0 0 # here\r\n\
             v 1 1 0 1.0\r\nvt 0 0\r\nv 0 1 0\r\ng side\r\nusemtl m\r\ns off\r\nf 1/1/1 2//1 \\\r\n 3/1 4\r\nf -4 -3 -2\r\nl 1 2\r\n";
-        let mesh = read("a.obj", text).unwrap();
+        let mesh = read("a.obj", text, None).unwrap();
         assert_eq!(mesh.positions.len(), 4);
         assert_eq!(mesh.positions[2], DVec3::new(1.0, 1.0, 0.0));
         assert_eq!(mesh.len(), 2);
@@ -84,7 +99,7 @@ mod tests {
             ("v 0 0 0\nf 1 -5 1", "vertex -5"),
             ("f 99999999999 1 2", "vertex 99999999999"),
         ] {
-            let why = read("a.obj", text.as_bytes()).unwrap_err().0;
+            let why = read("a.obj", text.as_bytes(), None).unwrap_err().0;
             assert!(why.starts_with("a.obj, line") && why.contains(part), "{why}");
         }
     }

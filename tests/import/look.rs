@@ -1,6 +1,7 @@
 //! Materials and textures: read where they are asked for, written with the motion, and never in the way of the mesh.
 
 use super::file;
+use super::folders::archive;
 use super::gltf_maker::{Maker, PNG, dressed};
 use glam::{DAffine3, DVec3};
 use serde_json::{Value, json};
@@ -136,4 +137,101 @@ fn a_moving_mesh_keeps_its_look() {
     let other = Sequence::new("other", vec![[0, 1, 2]], still.reference().to_vec(), Vec::new()).unwrap();
     let clay = gltf::Gltf::from_slice(&exact(&other, Some(&look))).unwrap();
     assert_eq!((clay.materials().count(), clay.images().count()), (1, 0));
+}
+
+/// Two triangles of a square with a seam in the picture between them, and a fold of 90°; materials and picture in files
+/// beside it.
+const OBJ: &str = "mtllib list of a cat.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nv 1 0 1\nvt 0 0\nvt 1 0\nvt 0 1\nvt 0.5 0.5\n\
+    vt 1 0\nvn 0 0 1\nvn 1 0 0\nvn 0 0 2\nusemtl skin\nf 1/1/1 2/2/1 3/3/3\nusemtl Glass#2\nf -3/5/2 4/4/2 3/3/2\n";
+const MTL: &str = "newmtl unused\nmap_Kd other.png\nnewmtl skin\nKd 0 0 0\nmap_Kd -clamp on textures\\my skin.png\n\
+    newmtl Glass#2\nKd 0.25 0.5 1\nd 0.5\n";
+
+fn cat(obj: &str) -> [File; 4] {
+    let names = ["cat/cat.obj", "cat/list of a cat.mtl", "cat/textures/my skin.png", "cat/textures/other.png"];
+    let bytes = [obj.as_bytes(), MTL.as_bytes(), PNG, PNG];
+    std::array::from_fn(|i| file(names[i], bytes[i]))
+}
+
+#[test]
+fn an_obj_has_the_look_of_the_files_beside_it() {
+    assert!(open(&cat(OBJ), &Options::default()).unwrap().look.is_none(), "only if asked for");
+    let imported = looked_at(&cat(OBJ));
+    assert_eq!(imported.sequence.sizes().vertices, 4);
+    let look = imported.look.expect("a look");
+    assert!(look.fits(4, 2));
+    // Vertex 1 has one place in the picture and two sides of the fold, vertex 2 the fold alone.
+    assert_eq!(look.vertices, [0, 1, 2, 1, 3, 2]);
+    assert_eq!(look.faces, [[0, 1, 2], [3, 4, 5]]);
+    assert_eq!(look.shades, [0, 1, 2, 3, 4, 5]);
+    assert_eq!(look.materials, [Some(0), Some(1)]);
+    assert_eq!(layer(&look, "TEXCOORD_0"), [0., 1., 1., 1., 0., 0., 1., 1., 0.5, 0.5, 0., 0.]);
+    assert_eq!(look.images, [PNG], "one that is used");
+    let document = Value::Object(look.document.clone());
+    assert_eq!(document["images"], json!([{ "mimeType": "image/png", "name": "my skin.png" }]));
+    assert_eq!(document["materials"][0]["pbrMetallicRoughness"]["baseColorTexture"]["index"], 0);
+    assert_eq!(document["materials"][1]["name"], "Glass#2");
+    assert_eq!(document["materials"][1]["pbrMetallicRoughness"]["baseColorFactor"], json!([0.25, 0.5, 1.0, 0.5]));
+    // It comes back as it was.
+    let bytes = exact(&imported.sequence, Some(&look));
+    gltf::Gltf::from_slice(&bytes).expect("a document without a fault");
+    let back = looked_at(&[file("back.glb", bytes)]).look.expect("a look");
+    assert_eq!((&back.vertices, &back.shades, &back.faces), (&look.vertices, &look.shades, &look.faces));
+    assert_eq!(back.layers, look.layers);
+    assert_eq!((&back.materials, &back.images, &back.document), (&look.materials, &look.images, &look.document));
+    // The same in an archive, and for its later poses.
+    let files = cat(OBJ);
+    let list: Vec<(&str, &[u8])> = files.iter().map(|f| (f.name.as_str(), f.bytes.as_slice())).collect();
+    assert_eq!(looked_at(&[file("a.zip", archive(&list))]).look.as_ref(), Some(&look));
+    let mut poses = files.to_vec();
+    poses.push(file("cat/cat2.obj", OBJ));
+    assert_eq!(looked_at(&poses).look, Some(look));
+}
+
+#[test]
+fn without_normals_an_obj_is_smooth() {
+    let faces = "f 1/1 2/2 3/3\nusemtl Glass#2\nf -3/5 4/4 3/3\n";
+    let plain = format!("{}usemtl skin\n{faces}", OBJ.split_once("usemtl").unwrap().0);
+    let look = looked_at(&cat(&plain)).look.expect("a look");
+    assert_eq!(look.vertices, [0, 1, 2, 3], "vt 2 and 5 are the same");
+    assert_eq!(look.shades, [0, 1, 2, 3]);
+}
+
+#[test]
+fn what_is_broken_in_the_look_of_an_obj_is_left_out() {
+    let [mesh, list, _, _] = cat(OBJ);
+    // Without the picture, and without the list.
+    let look =
+        looked_at(&[mesh.clone(), list.clone(), file("textures/my skin.png", b"no picture")]).look.expect("a look");
+    assert!(look.layers.is_empty() && look.images.is_empty() && look.document.get("textures").is_none());
+    assert_eq!(look.document["materials"][0]["pbrMetallicRoughness"]["baseColorFactor"], json!([0.0, 0.0, 0.0, 1.0]));
+    assert!(looked_at(std::slice::from_ref(&mesh)).look.is_none());
+    assert!(looked_at(&[mesh, file("cat/list of a cat.mtl", b"newmtl other\nKd 1 0 0")]).look.is_none());
+    // Numbers that are none, name nothing, or are left out; a material that is not there, and none.
+    let odd = "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 1 1 0\nmtllib gone.mtl\nmtllib list of a cat.mtl\nvt nan 1e99\nvt 1\nvn inf x\nf 1/9/9 2/-9/0 3/x/99999999999\n\
+        usemtl skin\nf 1/1/1 2/2 3 4//1\nusemtl gone\nf 1 1 2/1\nf 1 2\nf 2/1/1/1 3// 4/";
+    let imported = looked_at(&[file("odd.obj", odd), list, file("my skin.png", PNG)]);
+    let look = imported.look.expect("a look");
+    assert!(look.fits(4, imported.sequence.faces().len()));
+    assert_eq!(look.materials, [Some(2), Some(0), Some(0), Some(1), Some(1)]);
+    assert_eq!(look.images, [PNG]);
+    assert!(look.layers[0].values.iter().all(|value| value.is_finite()));
+    gltf::Gltf::from_slice(&exact(&imported.sequence, Some(&look))).expect("a document without a fault");
+    // A polygon of many corners is cut as a fan.
+    let corners: String = (1..=300).map(|i| format!(" {i}/{i}")).collect();
+    let points: String = (0..300).map(|i| format!("v {i} {} 0\nvt {i} 0\n", i * i)).collect();
+    let fan = format!("mtllib list of a cat.mtl\n{points}usemtl skin\nf{corners}\n");
+    let look = looked_at(&cat(&fan)).look.expect("a look");
+    assert_eq!((look.faces.len(), look.vertices.len()), (298, 300));
+    let coordinates = layer(&look, "TEXCOORD_0").chunks(2).zip(&look.vertices);
+    assert!(coordinates.into_iter().all(|(at, &vertex)| at[0] == vertex as f32));
+    // Cut short anywhere.
+    for text in [OBJ, odd] {
+        for end in 0..text.len() {
+            let [_, list, skin, _] = cat("");
+            let options = Options { look: true, ..Options::default() };
+            let Ok(imported) = open(&[file("cat/cut.obj", &text[..end]), list, skin], &options) else { continue };
+            let sizes = imported.sequence.sizes();
+            assert!(imported.look.is_none_or(|look| look.fits(sizes.vertices, sizes.faces)), "{end}");
+        }
+    }
 }

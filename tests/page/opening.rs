@@ -115,3 +115,51 @@ fn a_lost_device_is_survived() {
         assert_eq!(after[what], before[what], "{what}");
     }
 }
+
+/// A tetrahedron with a picture, and the files that an OBJ has beside it.
+const TETRAHEDRON: &str = "mtllib t.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nvt 0 0\nvt 1 0\nvt 0 1\nusemtl skin\n\
+    f 1/1 3/2 2/3\nf 1/1 2/2 4/3\nf 1/1 4/2 3/3\nusemtl eye\nf 2/1 3/2 4/3\n";
+const MATERIALS: &str = "newmtl skin\nmap_Kd t.png\nnewmtl eye\nKd 0 0.5 1\n";
+
+#[test]
+#[ignore = "drives the built page in Chromium: run by `cargo xtask test`"]
+fn without_any_gpu_all_but_the_picture_works() {
+    let tail = "?backend=none#v1;zoo=snake;faces=3000;step=keypoints;points=12,407,900,1300";
+    let mut page = Page::open(Backend::WebGl2, Screen::Still, tail);
+    page.wait_until("sinew.ready && sinew.state().parts > 1 && !sinew.state().busy", 60.0);
+    assert_eq!(page.evaluate("document.querySelector('#no-gpu').hidden"), false, "it is said");
+    let dots =
+        "new Set([...document.querySelectorAll('#panel .pin-dot')].map((dot) => dot.style.backgroundColor)).size";
+    assert_eq!(page.evaluate(dots), 4, "points have colours of their own");
+    let made = "sinew.app.parts.export().then((bytes) => { const text = new TextDecoder().decode(bytes);
+        return [new Set(text.match(/\"baseColorFactor\":\\[[^\\]]*/g)).size, sinew.state().parts].join(); })";
+    let (colours, parts) = (page.evaluate_within(made, 20.0), page.state()["parts"].as_u64().unwrap_or(0));
+    assert_eq!(colours, format!("{parts},{parts}"), "so have the parts in their file");
+    // A target in an OBJ with what lies beside it.
+    page.evaluate("sinew.app.setStep('target')");
+    let files: [(&str, &[u8]); 3] =
+        [("t.obj", TETRAHEDRON.as_bytes()), ("t.mtl", MATERIALS.as_bytes()), ("t.png", b"\x89PNG\r\n\x1a\n")];
+    page.drop_files(&files);
+    page.wait_until("sinew.state().target && !sinew.state().busy", 20.0);
+    let placed = "points.map((point, target) => ({ ...point, target, state: 'placed', confidence: 1 }))";
+    page.evaluate(&format!("{{ const {{ points }} = sinew.app.doc; sinew.app.edit({{ points: {placed} }}); }}"));
+    page.evaluate("sinew.app.setStep('export')");
+    page.wait_until("sinew.state().moves?.pairs === 4 && !sinew.state().busy", 30.0);
+    let images = "sinew.app.transfer.file('exact').then(({ images }) => images)";
+    assert_eq!(page.evaluate_within(images, 20.0), 1);
+    page.wait_until("document.querySelector('#panel').innerText.includes('In its own materials and 1 texture')", 10.0);
+    assert_eq!(page.state()["error"], serde_json::Value::Null);
+    let painted = "sinew.app.parts.segment().then(() => sinew.app.stage.kept.paint.at(-1)[0])";
+    assert_eq!(
+        page.evaluate_within(painted, 20.0),
+        "paint_clay",
+        "new parts do not show where both figures are of clay"
+    );
+    // A link opens its two figures in one step, and undo goes back over both.
+    page.evaluate("location.hash = 'v1;zoo=octopus;faces=3000;target=cactus;target.faces=3000'");
+    let there = "sinew.state().source.name === 'octopus' && sinew.state().target?.name === 'cactus'";
+    page.wait_until(&format!("{there} && sinew.state().parts && !sinew.state().busy"), 60.0);
+    page.evaluate("sinew.app.undo()");
+    page.wait_until("sinew.state().source.name === 'snake' && sinew.state().target?.name.startsWith('t')", 10.0);
+    page.wait_until("sinew.state().parts && !sinew.state().busy", 30.0);
+}

@@ -67,10 +67,10 @@ function build(app) {
 /** What the target looks like in its files. */
 function look({ doc }, file) {
   const { kind, files = [] } = doc.target.source;
-  const gltf = kind === 'files' && files.some(({ name }) => /\.(glb|gltf|zip)$/i.test(name));
+  const dressed = kind === 'files' && files.some(({ name }) => /\.(glb|gltf|zip|mtl)$/i.test(name));
   const words = file && file.images >= 0 ? `In its own materials${file.images ? ` and ${plural(file.images, 'texture')}` : ''}.`
-    : gltf ? (file ? 'Its file has no materials: it is of clay.' : 'In its own materials and textures.')
-      : 'Of clay: materials and textures are carried over from glTF.';
+    : dressed ? (file ? 'Its file has no materials: it is of clay.' : 'In its own materials and textures.')
+      : 'Of clay: materials and textures are carried over from glTF, and from OBJ with its .mtl.';
   return h('p', { class: 'small faint' }, words);
 }
 

@@ -19,7 +19,7 @@ export const sourceStep = {
   build,
 };
 
-export const ACCEPT = '.glb,.gltf,.bin,.obj,.off,.ply,.stl,.zip,model/gltf-binary,model/gltf+json,application/zip';
+export const ACCEPT = '.glb,.gltf,.bin,.obj,.mtl,.png,.jpg,.jpeg,.off,.ply,.stl,.zip,model/gltf-binary,model/gltf+json,application/zip';
 const DETAIL = [3_000, 12_000, 50_000, 200_000];
 const RATES = [6, 12, 24, 30, 60];
 const REFERENCES = [['bind', 'bind pose'], ['nodes', 'as placed in the file'], ['first-frame', 'first pose']];

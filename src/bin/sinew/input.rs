@@ -2,8 +2,11 @@
 
 use crate::Refusal;
 use clap::{Args, ValueEnum};
-use sinew::import::{File, Imported, Options, Reference, Sampling, may_be_needed, natural_order, open_in_order};
+use sinew::import::{
+    File, Imported, Options, Reference, Sampling, may_be_needed, natural_order, needed_for_look, open_in_order,
+};
 use sinew::warning::Warning;
+use std::collections::BTreeSet;
 use std::io::Write;
 use std::path::{Path, PathBuf};
 
@@ -75,6 +78,7 @@ impl Input {
         let options = Options { weld: !self.no_weld, look: true, ..Options::default() };
         let mut files = vec![read(path)?];
         files.extend(beside(path)?);
+        files.extend(materials(path, &files[0]));
         let mut mesh = open_in_order(&files, &options)?;
         // It stands still, as it should.
         mesh.warnings.retain(|warning| warning.code != "no-animation");
@@ -125,4 +129,27 @@ fn beside(document: &Path) -> Result<Vec<File>, Refusal> {
     let addresses = lists.flatten().filter_map(|b| b.get("uri")?.as_str()).filter(|uri| !uri.starts_with("data:"));
     let decoded = addresses.map(sinew::import::gltf::percent_decoded);
     Ok(decoded.filter_map(|name| read(&folder.join(name)).ok()).collect())
+}
+
+/// The lists of materials that an OBJ names and the pictures that these name, as far as they are there. Only what lies
+/// beside it, or in folders beside it, is read, whatever the names say.
+fn materials(path: &Path, mesh: &File) -> Vec<File> {
+    if !path.extension().is_some_and(|end| end.eq_ignore_ascii_case("obj")) {
+        return Vec::new();
+    }
+    let folder = path.parent().unwrap_or(Path::new(""));
+    let whole =
+        |folder: &Path| if folder == Path::new("") { Path::new(".").canonicalize() } else { folder.canonicalize() };
+    let Ok(root) = whole(folder) else { return Vec::new() };
+    let mut known = BTreeSet::new();
+    let mut named = |folder: &Path, file: &File| -> Vec<File> {
+        let paths = needed_for_look(file).into_iter().map(|name| folder.join(name.replace('\\', "/")));
+        let inside =
+            |path: &PathBuf| path.canonicalize().is_ok_and(|whole| whole.starts_with(&root) && whole.is_file());
+        paths.filter(inside).filter(|path| known.insert(path.clone())).filter_map(|path| read(&path).ok()).collect()
+    };
+    let lists = named(folder, mesh);
+    let folder_of = |list: &File| Path::new(&list.name).parent().unwrap_or(Path::new("")).to_owned();
+    let pictures: Vec<File> = lists.iter().flat_map(|list| named(&folder_of(list), list)).collect();
+    lists.into_iter().chain(pictures).collect()
 }

@@ -2,6 +2,7 @@
 
 use super::document::Document;
 use super::meshopt::Compressed;
+use crate::import::beside::beside;
 use crate::import::limits::Budget;
 use crate::import::{File, ImportError};
 use std::borrow::Cow;
@@ -119,33 +120,6 @@ fn locate<'a>(name: &str, uri: &str, files: &'a [File]) -> Result<Cow<'a, [u8]>,
     Err(ImportError(format!(
         "{name} keeps its data in {wanted}, which was not given; give both together (or the whole folder)"
     )))
-}
-
-/// The file that an address relative to the document means: by its path, else by its last name if that is unique.
-fn beside<'a>(document: &str, wanted: &str, files: &'a [File]) -> Option<&'a File> {
-    let folder = document.rfind(['/', '\\']).map_or("", |slash| &document[..slash]);
-    let path = normal_path(&format!("{folder}/{wanted}"));
-    if let Some(file) = files.iter().find(|f| normal_path(&f.name) == path) {
-        return Some(file);
-    }
-    let last = |path: &str| normal_path(path).pop().unwrap_or_default().to_lowercase();
-    let mut same = files.iter().filter(|f| last(&f.name) == last(wanted));
-    same.next().filter(|_| same.next().is_none())
-}
-
-/// The parts of a path with `.` and `..` resolved.
-fn normal_path(path: &str) -> Vec<String> {
-    let mut parts: Vec<String> = Vec::new();
-    for part in path.split(['/', '\\']) {
-        match part {
-            "" | "." => {}
-            ".." => {
-                parts.pop();
-            }
-            _ => parts.push(part.to_owned()),
-        }
-    }
-    parts
 }
 
 fn strip_prefix_ignoring_case<'s>(text: &'s str, prefix: &str) -> Option<&'s str> {

@@ -4,6 +4,7 @@
 
 use super::buffers::Buffers;
 use super::document::Document;
+use crate::import::beside::picture_kind;
 use crate::import::limits::Budget;
 use crate::look::Look;
 use crate::warning::Warning;
@@ -69,7 +70,7 @@ impl Materials {
         // For each image of the file its new number.
         let mut numbers: Vec<Option<usize>> = Vec::new();
         for (number, image) in self.images.iter().enumerate() {
-            let found = read(image, document, buffers).and_then(|bytes| Some((kind(&bytes)?, bytes)));
+            let found = read(image, document, buffers).and_then(|bytes| Some((picture_kind(&bytes)?, bytes)));
             let found = found.filter(|(_, bytes)| budget.take(bytes.len() as u64, 1, "an image").is_ok());
             numbers.push(found.as_ref().map(|_| images.len()));
             let Some((kind, bytes)) = found else { continue };
@@ -118,17 +119,6 @@ fn read<'a>(image: &Value, document: &Document, buffers: &'a Buffers) -> Option<
     match image.get("bufferView").and_then(Value::as_u64) {
         Some(view) => buffers.view(document, usize::try_from(view).ok()?).ok().map(Cow::Borrowed),
         None => buffers.beside(&document.name, image.get("uri")?.as_str()?).ok(),
-    }
-}
-
-/// The kind of a picture, by how it begins.
-fn kind(bytes: &[u8]) -> Option<&'static str> {
-    match bytes {
-        [0x89, b'P', b'N', b'G', ..] => Some("image/png"),
-        [0xff, 0xd8, 0xff, ..] => Some("image/jpeg"),
-        [b'R', b'I', b'F', b'F', _, _, _, _, b'W', b'E', b'B', b'P', ..] => Some("image/webp"),
-        [0xab, b'K', b'T', b'X', b' ', b'2', b'0', 0xbb, ..] => Some("image/ktx2"),
-        _ => None,
     }
 }
 
