@@ -113,7 +113,9 @@ export class Target {
     const { points } = app.doc;
     if (!points[index]) return;
     if (points.some(({ target, state }, i) => i !== index && state === 'placed' && target === vertex)) return;
-    app.edit({ points: points.with(index, Object.freeze({ source: points[index].source, target: vertex, state: 'placed', confidence: 1 })) }, mark);
+    // Where another one was only proposed, that one is looked for elsewhere.
+    const free = points.map((point) => (point.state === 'proposed' && point.target === vertex ? fresh(point.source) : point));
+    app.edit({ points: free.with(index, Object.freeze({ source: points[index].source, target: vertex, state: 'placed', confidence: 1 })) }, mark);
   }
 
   /** Takes a point away from the target. */

@@ -141,8 +141,9 @@ fn without_any_gpu_all_but_the_picture_works() {
         [("t.obj", TETRAHEDRON.as_bytes()), ("t.mtl", MATERIALS.as_bytes()), ("t.png", b"\x89PNG\r\n\x1a\n")];
     page.drop_files(&files);
     page.wait_until("sinew.state().target && !sinew.state().busy", 20.0);
-    let placed = "points.map((point, target) => ({ ...point, target, state: 'placed', confidence: 1 }))";
-    page.evaluate(&format!("{{ const {{ points }} = sinew.app.doc; sinew.app.edit({{ points: {placed} }}); }}"));
+    page.wait_until("sinew.state().tally.missing === 0 && !sinew.state().busy", 20.0);
+    // Some of them where others are proposed.
+    page.evaluate("[3, 2, 1, 0].forEach((vertex, i) => sinew.app.target.place(i, vertex))");
     page.evaluate("sinew.app.setStep('export')");
     page.wait_until("sinew.state().moves?.pairs === 4 && !sinew.state().busy", 30.0);
     let images = "sinew.app.transfer.file('exact').then(({ images }) => images)";
