@@ -4,28 +4,24 @@
 //! hands that hang beside it for one. It follows what lies beneath it on the target itself, as one garment and evened out.
 
 use super::kd_tree::KdTree;
-use super::mend::fill;
+use super::mend::{SMALL, fill};
 use super::registration::Foot;
 use super::rig::weights::{Averager, Row, main_bone};
 use super::surface::Surface;
 use crate::mesh::groups::Groups;
-use glam::DVec3;
 use std::collections::BTreeMap;
 
 /// A piece lies over others that are no farther on average than this, over the diagonal of its box. (A hand that was cut
-/// off is near the arm at its end only.)
+/// off is near the arm at its end only.) So does any small piece, such as a button.
 const NEAR: f64 = 0.2;
-/// So does a piece whose diagonal is not longer than this, in radii, such as a button.
-const SMALL: f64 = 0.1;
 /// How far along a layer what it follows is evened out, over that diagonal: two legs move one skirt.
 const EVEN: f64 = 0.1;
 /// Rounds of averaging for that, the most.
 const MOST_ROUNDS: u32 = 100;
 
-/// Places of a surface by the connected piece that they lie on.
+/// The connected pieces of a surface, those with a mark among them.
 pub struct Pieces {
-    /// #N the lowest place of the piece.
-    of: Vec<u32>,
+    places: Vec<Vec<u32>>,
     /// #N whether the piece has a marked place.
     marked: Vec<bool>,
 }
@@ -33,15 +29,12 @@ pub struct Pieces {
 impl Pieces {
     /// Of a surface with some marked places.
     pub fn new(surface: &Surface, marks: impl Iterator<Item = u32>) -> Self {
-        let mut groups = Groups::new(surface.len());
-        for &[a, b, c] in &surface.faces {
-            groups.join(a, b);
-            groups.join(a, c);
-        }
-        let of: Vec<u32> = (0..surface.len() as u32).map(|v| groups.root(v)).collect();
-        let mut held = vec![false; of.len()];
-        marks.for_each(|v| held[of[v as usize] as usize] = true);
-        Self { marked: of.iter().map(|&piece| held[piece as usize]).collect(), of }
+        let places = surface.pieces();
+        let mut number = vec![0; surface.len()];
+        places.iter().enumerate().for_each(|(i, piece)| piece.iter().for_each(|&v| number[v as usize] = i));
+        let mut held = vec![false; places.len()];
+        marks.for_each(|v| held[number[v as usize]] = true);
+        Self { marked: number.iter().map(|&piece| held[piece]).collect(), places }
     }
 
     /// #N shares of the area, those of pieces with a mark: together, they are 1.
@@ -55,12 +48,7 @@ impl Pieces {
 
     /// The places of each piece without a mark.
     fn unmarked(&self) -> Vec<Vec<u32>> {
-        let mut places = vec![Vec::new(); self.of.len()];
-        for (v, &piece) in self.of.iter().enumerate().filter(|(v, _)| !self.marked[*v]) {
-            places[piece as usize].push(v as u32);
-        }
-        places.retain(|piece| !piece.is_empty());
-        places
+        self.places.iter().filter(|piece| piece.iter().any(|&v| !self.marked[v as usize])).cloned().collect()
     }
 }
 
@@ -124,8 +112,8 @@ impl<'a> Body<'a> {
             sum += self.surface.mass[v as usize] * at(v).distance(at(u));
             mass += self.surface.mass[v as usize];
         }
-        let diagonal = diagonal(self.surface, piece);
-        (diagonal <= SMALL || sum <= NEAR * diagonal * mass).then_some(beneath)
+        let sides = self.surface.sides(piece);
+        (sides.max_element() <= SMALL || sum <= NEAR * sides.length() * mass).then_some(beneath)
     }
 
     /// #N whether a place of a layer is on a stray patch of it: what lies beneath does not adjoin, on the body, what lies
@@ -162,17 +150,11 @@ fn even(target: &Surface, piece: &[u32], rows: &mut [Row], most: usize) {
     });
     let (count, sum) = lengths.fold((0, 0.0), |(count, sum), length| (count + 1, sum + length));
     // A step goes an edge at random, half of the time: so many go as far.
-    let steps = EVEN * diagonal(target, piece) * f64::from(count) / f64::max(sum, f64::MIN_POSITIVE);
+    let steps = EVEN * target.sides(piece).length() * f64::from(count) / f64::max(sum, f64::MIN_POSITIVE);
     let rounds = (2.0 * steps * steps).ceil().min(f64::from(MOST_ROUNDS)) as usize;
     let (mut averager, mut next) = (Averager::default(), vec![Row::new(); piece.len()]);
     for _ in 0..rounds {
         next.iter_mut().zip(piece).for_each(|(row, &v)| averager.average(target, rows, v as usize, most, row));
         next.iter_mut().zip(piece).for_each(|(row, &v)| std::mem::swap(row, &mut rows[v as usize]));
     }
-}
-
-/// The diagonal of the box around places.
-fn diagonal(surface: &Surface, places: &[u32]) -> f64 {
-    let points = || places.iter().map(|&v| surface.positions[v as usize]);
-    points().fold(DVec3::NEG_INFINITY, DVec3::max).distance(points().fold(DVec3::INFINITY, DVec3::min))
 }

@@ -7,7 +7,6 @@
 use super::rig::blend;
 use super::rig::weights::{Averager, Row, normalised};
 use super::surface::Surface;
-use crate::mesh::pieces::{Pieces, pieces};
 use glam::{DAffine3, DVec3};
 use std::cmp::Reverse;
 use std::collections::{BTreeMap, BinaryHeap};
@@ -26,7 +25,7 @@ const MOST_AVERAGES: usize = 12;
 /// The half width of a strip over the least that it needs.
 const WIDTH: f64 = 1.0;
 /// A piece is small if its box is not longer than this, in radii.
-const SMALL: f64 = 0.1;
+pub const SMALL: f64 = 0.1;
 /// Edges shorter than this, in radii, count as so long: slivers tell nothing.
 const SHORT: f64 = 2e-3;
 
@@ -130,21 +129,9 @@ pub fn stiffen(surface: &Surface, rows: &mut [Row], most: usize) {
 
 /// The vertices of each small piece.
 fn small_pieces(surface: &Surface) -> Vec<Vec<u32>> {
-    let Pieces { count, face } = pieces(&surface.faces, surface.len());
-    let mut vertices = vec![Vec::new(); count];
-    for (corners, &piece) in surface.faces.iter().zip(&face) {
-        vertices[piece as usize].extend(corners);
-    }
-    vertices.retain(|piece| {
-        let points = || piece.iter().map(|&v| surface.positions[v as usize]);
-        let sides = points().fold(DVec3::NEG_INFINITY, DVec3::max) - points().fold(DVec3::INFINITY, DVec3::min);
-        sides.max_element() <= SMALL
-    });
-    for piece in &mut vertices {
-        piece.sort_unstable();
-        piece.dedup();
-    }
-    vertices
+    let mut pieces = surface.pieces();
+    pieces.retain(|piece| surface.sides(piece).max_element() <= SMALL);
+    pieces
 }
 
 /// The mean of the rows of some vertices, by their shares of the area.

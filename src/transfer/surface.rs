@@ -4,6 +4,7 @@ use super::kd_tree::KdTree;
 use crate::mesh::ball::unit_ball;
 use crate::mesh::doctor::outward;
 pub use crate::mesh::face::nearest_in_triangle;
+use crate::mesh::pieces::{Pieces, pieces};
 use crate::mesh::{face, weld};
 use crate::sequence::Sequence;
 use glam::DVec3;
@@ -132,6 +133,25 @@ impl Surface {
     /// The places that share an edge with a place.
     pub fn neighbours(&self, place: usize) -> &[u32] {
         &self.beside[self.neighbour_start[place] as usize..self.neighbour_start[place + 1] as usize]
+    }
+
+    /// The places of each connected piece, in ascending order.
+    pub fn pieces(&self) -> Vec<Vec<u32>> {
+        let Pieces { count, face } = pieces(&self.faces, self.len());
+        let mut places = vec![Vec::new(); count];
+        for (v, around) in self.start.windows(2).enumerate() {
+            // Every place has a face, unless all faces there were flat.
+            if let Some(&f) = self.around[around[0] as usize..around[1] as usize].first() {
+                places[face[f as usize] as usize].push(v as u32);
+            }
+        }
+        places
+    }
+
+    /// The sides of the box around places.
+    pub fn sides(&self, places: &[u32]) -> DVec3 {
+        let points = || places.iter().map(|&v| self.positions[v as usize]);
+        points().fold(DVec3::NEG_INFINITY, DVec3::max) - points().fold(DVec3::INFINITY, DVec3::min)
     }
 
     fn shares(&self) -> Vec<f64> {
