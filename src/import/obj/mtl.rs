@@ -1,5 +1,5 @@
-//! The lists of materials beside an OBJ: colour, opacity, and the picture on it. All else, and what is broken, is passed
-//! over.
+//! The lists of materials beside an OBJ: colour, opacity, glow, roughness, and the picture on it. All else, and what is
+//! broken, is passed over.
 
 use crate::import::text::{Lines, words};
 use serde_json::{Map, Value, json};
@@ -8,6 +8,8 @@ use serde_json::{Map, Value, json};
 const PLAIN: [f64; 3] = [0.8; 3];
 /// As dull as parts are painted.
 const ROUGHNESS: f64 = 0.9;
+/// The exponent of a mirror's highlight; that of Blender, which writes most of these lists and reads them so.
+const SHARPEST: f64 = 1000.0;
 /// Options of a picture that take one word, and those that take up to three numbers.
 const ONE: &[&[u8]] =
     &[b"-blendu", b"-blendv", b"-boost", b"-bm", b"-cc", b"-clamp", b"-imfchan", b"-texres", b"-type"];
@@ -20,14 +22,26 @@ pub struct Material {
     colour: [f64; 3],
     /// By the statements `d` and `Tr`; the first is believed where both are there.
     opacity: [Option<f64>; 2],
+    glow: [f64; 3],
+    roughness: f64,
     /// The file with the picture, as it is written.
     pub picture: Option<String>,
+    /// The same for how opaque it is.
+    mask: Option<String>,
 }
 
 impl Material {
     /// One without anything.
     pub fn plain(name: &str) -> Self {
-        Self { name: name.to_owned(), colour: PLAIN, opacity: [None; 2], picture: None }
+        Self {
+            name: name.to_owned(),
+            colour: PLAIN,
+            opacity: [None; 2],
+            glow: [0.0; 3],
+            roughness: ROUGHNESS,
+            picture: None,
+            mask: None,
+        }
     }
 
     /// As glTF has it; `texture` is the number of its picture. A picture takes the place of the colour, which is often
@@ -39,13 +53,19 @@ impl Material {
         let mut surface = Map::new();
         surface.insert("baseColorFactor".into(), json!([r, g, b, opacity]));
         surface.insert("metallicFactor".into(), json!(0.0));
-        surface.insert("roughnessFactor".into(), json!(ROUGHNESS));
+        surface.insert("roughnessFactor".into(), json!(self.roughness));
         if let Some(texture) = texture {
             surface.insert("baseColorTexture".into(), json!({ "index": texture }));
         }
         let mut entry = json!({ "name": self.name, "pbrMetallicRoughness": surface });
+        if self.glow != [0.0; 3] {
+            entry["emissiveFactor"] = json!(self.glow);
+        }
         if opacity < 1.0 {
             entry["alphaMode"] = json!("BLEND");
+        } else if texture.is_some() && self.mask == self.picture {
+            // Cut out, not mixed: what is mixed does not hide what lies behind it, and this is often a whole figure.
+            entry["alphaMode"] = json!("MASK");
         }
         entry
     }
@@ -63,21 +83,38 @@ pub fn read(bytes: &[u8]) -> Vec<Material> {
         let Some(material) = materials.last_mut() else { continue };
         let last = || words(rest).last().and_then(number);
         match key {
-            b"Kd" => {
-                let found: Vec<f64> = words(rest).map_while(number).collect();
-                match found[..] {
-                    [r, g, b, ..] => material.colour = [r, g, b],
-                    [grey] => material.colour = [grey; 3],
-                    _ => {}
+            b"Kd" => set_colour(&mut material.colour, rest),
+            b"Ke" => set_colour(&mut material.glow, rest),
+            b"Ns" => {
+                if let Some(exponent) = words(rest).next().and_then(float) {
+                    material.roughness = 1.0 - (exponent / SHARPEST).clamp(0.0, 1.0).sqrt();
                 }
             }
             b"d" => material.opacity[0] = last(),
             b"Tr" => material.opacity[1] = last().map(|through| 1.0 - through),
-            b"map_Kd" => material.picture = Some(text(without_options(rest))).filter(|name| !name.is_empty()),
+            b"map_Kd" => material.picture = picture(rest),
+            b"map_d" => material.mask = picture(rest),
             _ => {}
         }
     }
     materials
+}
+
+/// Takes over a colour, or a grey, where there is one.
+#[inline(never)]
+fn set_colour(colour: &mut [f64; 3], line: &[u8]) {
+    let found: Vec<f64> = words(line).map_while(number).collect();
+    match found[..] {
+        [r, g, b, ..] => *colour = [r, g, b],
+        [grey] => *colour = [grey; 3],
+        _ => {}
+    }
+}
+
+/// The name of a picture's file.
+#[inline(never)]
+fn picture(line: &[u8]) -> Option<String> {
+    Some(text(without_options(line))).filter(|name| !name.is_empty())
 }
 
 /// A number from 0 to 1.
@@ -134,8 +171,10 @@ mod tests {
     fn reads_what_exporters_write() {
         let list = b"# Blender\r\nKd 1 1 1\r\nnewmtl skin of a cat\r\n\tKd 0.5 0.25 0\r\nd 0.5\r\nTr 0\r\nillum 2\r\n\
             newmtl eye\nKd nan 1 1\nKd 0.5\nTr 0.25\nmap_Kd -s 1 1 1 -o 0.5 -clamp on textures\\my eye.png\n\
-            newmtl\nKd 7 -1 .5\nd -halo 0\nmap_Kd -s 1 2 3\nmap_Kd";
-        let [skin, eye, last] = &read(list)[..] else { panic!("three materials") };
+            Ke 0 0 0\nmap_d -imfchan m textures\\my eye.png\nNs 250\n\
+            newmtl\nKd 7 -1 .5\nKe 2 0.5 0\nNs nan\nd -halo 0\nmap_Kd -s 1 2 3\nmap_Kd\n\
+            newmtl hair\nmap_Kd hair.png\nmap_d hair.png\nNs 2000\nnewmtl lash\nmap_Kd a.png\nmap_d b.png";
+        let [skin, eye, last, hair, lash] = &read(list)[..] else { panic!("five materials") };
         assert_eq!((skin.name.as_str(), &skin.picture), ("skin of a cat", &None));
         let surface = |entry: &Value| entry["pbrMetallicRoughness"].clone();
         let entry = skin.entry(None);
@@ -149,5 +188,12 @@ mod tests {
         let entry = last.entry(None);
         assert_eq!(surface(&entry)["baseColorFactor"], json!([1.0, 0.0, 0.5, 1.0]), "seen, and within bounds");
         assert_eq!((last.name.as_str(), &last.picture, entry.get("alphaMode")), ("", &None, None));
+        assert_eq!(entry["emissiveFactor"], json!([1.0, 0.5, 0.0]));
+        assert_eq!(eye.entry(Some(3)).get("emissiveFactor"), None, "nothing glows black");
+        let dull = |material: &Material| surface(&material.entry(None))["roughnessFactor"].clone();
+        assert_eq!([skin, eye, last, hair].map(dull), [0.9, 0.5, 0.9, 0.0].map(|value| json!(value)));
+        let cut = |material: &Material, texture| material.entry(texture).get("alphaMode").cloned();
+        assert_eq!(cut(hair, Some(0)), Some(json!("MASK")), "by the opacity in the picture itself");
+        assert_eq!([cut(hair, None), cut(lash, Some(0))], [None, None], "that of another picture is not there");
     }
 }
