@@ -319,8 +319,13 @@ export class App extends EventTarget {
   // Work and words.
 
   cancel() {
-    if (this.recording) this.recording.abort();
-    else this.engine.cancel();
+    if (this.recording) {
+      this.recording.abort();
+      return;
+    }
+    // What is being downloaded, the engine knows nothing of.
+    this.busy?.stop.abort();
+    this.engine.cancel();
   }
 
   /** Tells the visitor something, calmly. */

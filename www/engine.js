@@ -66,7 +66,7 @@ export class Engine {
 
   /** Stops what runs; with `all` also what waits. */
   cancel({ all = false } = {}) {
-    this.#restart(new Cancelled('Cancelled.'), all);
+    if (this.pending.size) this.#restart(new Cancelled('Cancelled.'), all);
   }
 
   async #start() {

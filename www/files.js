@@ -1,17 +1,14 @@
-/** Files as the visitor gives them: dropped, chosen, or at an address. */
+/** Files as the visitor gives them: dropped or chosen. */
+import { megabytes } from './format.js';
 
 /** More than this cannot be held by a page, in bytes. */
 const MOST_BYTES = 1 << 30;
-/** What a link may bring, in bytes. */
-const MOST_DOWNLOAD = 256 << 20;
 
 /** What is often dropped in vain, and where it is made. */
 const FOREIGN = /\.(fbx|blend|dae|usd[acz]?|3ds|max|ma|mb|c4d|bvh|abc|x3d|vrm|pmx)$/i;
 /** What only says how a mesh looks; it is found by its name. */
 const FOR_LOOKS = /\.(mtl|png|jpe?g)$/i;
 const READABLE = /\.(glb|gltf|obj|off|ply|stl|zip)$/i;
-
-const megabytes = (bytes) => `${Math.round(bytes / (1 << 20))} MB`;
 
 /**
  * The message that opens files.
@@ -40,7 +37,7 @@ function refuse(files) {
 /** What the engine reads the look of a figure from: the files that it was opened from, as far as they are still there. */
 export async function originals(source) {
   const none = { files: [], options: {} };
-  if (source?.kind !== 'files') return none;
+  if (!source?.files) return none;
   return collect(source.files, source.options).catch(() => none);
 }
 
@@ -81,84 +78,3 @@ async function walk(entry) {
 
 /** The files of a file button. */
 export const chosen = (list) => [...list].map((file) => ({ name: file.webkitRelativePath || file.name, blob: file }));
-
-/**
- * Downloads what `?src=` names; of a .gltf also the buffers and images beside it.
- * @param {string} address https, or of this very site
- */
-export async function fetchSource(address, progress) {
-  const budget = { left: MOST_DOWNLOAD };
-  const url = allowed(address, location.href);
-  const main = await download(url, budget, progress);
-  if (!/\.gltf$/i.test(url.pathname)) return [main];
-  let document;
-  try {
-    document = JSON.parse(await main.blob.text());
-  } catch {
-    throw new Error(`“${main.name}” is not a glTF file.`);
-  }
-  const files = [main];
-  for (const uri of beside(document?.buffers)) {
-    const file = await download(allowed(uri, url), budget, progress);
-    files.push({ ...file, name: decoded(uri) });
-  }
-  for (const uri of beside(document?.images)) {
-    try {
-      const file = await download(allowed(uri, url), budget, progress);
-      files.push({ ...file, name: decoded(uri) });
-    } catch {
-      // Without a picture it has its shape and motion all the same.
-    }
-  }
-  return files;
-}
-
-/** The addresses in a list of a glTF document. */
-function beside(list) {
-  const addresses = Array.isArray(list) ? list.map((entry) => entry?.uri) : [];
-  return new Set(addresses.filter((uri) => typeof uri === 'string' && !uri.startsWith('data:')));
-}
-
-/** What a part of an address stands for; itself where it is no valid encoding. */
-function decoded(part) {
-  try {
-    return decodeURIComponent(part);
-  } catch {
-    return part;
-  }
-}
-
-function allowed(address, base) {
-  const url = URL.canParse(address, base) ? new URL(address, base) : null;
-  if (!url || (url.protocol !== 'https:' && url.origin !== location.origin)) {
-    throw new Error('The link names a file that is neither on this site nor on an https address, so it was not opened.');
-  }
-  return url;
-}
-
-async function download(url, budget, progress) {
-  const name = decoded(url.pathname.split('/').pop()) || url.hostname;
-  let response;
-  try {
-    response = await fetch(url, { credentials: url.origin === location.origin ? 'same-origin' : 'omit', referrerPolicy: 'no-referrer' });
-  } catch {
-    throw new Error(`“${name}” could not be loaded from ${url.hostname}. The host may not allow other sites to read it.`);
-  }
-  if (!response.ok) throw new Error(`“${name}” could not be loaded from ${url.hostname} (answer ${response.status}).`);
-  const size = Number(response.headers.get('content-length')) || 0;
-  const pieces = [];
-  let got = 0;
-  for (const reader = response.body.getReader(); ;) {
-    const { done, value } = await reader.read();
-    if (done) break;
-    got += value.length;
-    budget.left -= value.length;
-    if (budget.left < 0) {
-      reader.cancel();
-      throw new Error(`“${name}” is larger than ${megabytes(MOST_DOWNLOAD)}, so it was not loaded from the link.`);
-    }
-    pieces.push(value);
-    progress({ stage: 'downloading', done: size ? Math.min(1, got / size) : 0 });
-  }
-  return { name, blob: new Blob(pieces) };
-}

@@ -31,6 +31,9 @@ export function bytes(value) {
   return value < 9.95e8 ? `${(value / 1e6).toFixed(1)} MB` : `${(value / 1e9).toFixed(1)} GB`;
 }
 
+/** A limit, in whole megabytes. */
+export const megabytes = (value) => `${Math.round(value / (1 << 20))} MB`;
+
 /** A share of one as a percentage. */
 export function percent(share, digits = 1) {
   if (!Number.isFinite(share)) return '–';

@@ -1,6 +1,8 @@
 /** Opening a source: a creature, files, an address; and what becomes of what was open before. */
 import { BLANK, hasPlaced, isOwn } from './doc.js';
-import { collect, fetchSource, resting } from './files.js';
+import { fetchSource } from './download.js';
+import { Cancelled } from './engine.js';
+import { collect, resting } from './files.js';
 import { plural } from './format.js';
 import { OPENING } from './history.js';
 import { readProject } from './project.js';
@@ -44,8 +46,9 @@ export class Opener {
 
   openAddress(url, options = {}) {
     const source = { kind: 'src', url, files: null, options: { ...this.app.about.options, ...options } };
-    return this.#open('open', source, async (progress) => {
-      source.files = await fetchSource(url, progress);
+    const needed = (file) => this.app.engine.call('needed', { file }, { transfer: [file.bytes.buffer] });
+    return this.#open('open', source, async (progress, signal) => {
+      source.files = await fetchSource(url, { progress, signal, needed });
       return collect(source.files, source.options);
     });
   }
@@ -61,8 +64,10 @@ export class Opener {
     const { app } = this;
     if (app.busy?.left > WORTH_STOPPING) app.engine.cancel({ all: true });
     this.underWay++;
-    const sequence = await app.work.run('source', operation === 'zoo' ? 'making the creature' : 'reading', async (progress) => {
-      const message = await payload(progress);
+    const sequence = await app.work.run('source', operation === 'zoo' ? 'making the creature' : 'reading', async (progress, signal) => {
+      const message = await payload(progress, signal);
+      // The engine is to open nothing that the page no longer waits for.
+      if (signal.aborted) throw new Cancelled('Cancelled.');
       const transfer = [...(message.files ?? []), ...(message.still ?? [])].map((file) => file.bytes.buffer);
       return app.engine.call(operation, message, { progress, transfer });
     });

@@ -1,4 +1,5 @@
 /** The target: the second figure, and where the key points lie on it. */
+import { Cancelled } from './engine.js';
 import { collect } from './files.js';
 import { OPENING } from './history.js';
 import { fresh } from './keypoints.js';
@@ -46,8 +47,9 @@ export class Target {
 
   async #open(source, payload, { places, mark = null } = {}) {
     const { app } = this;
-    const sequence = await app.work.run('target', source.kind === 'zoo' ? 'making the creature' : 'reading', async (progress) => {
+    const sequence = await app.work.run('target', source.kind === 'zoo' ? 'making the creature' : 'reading', async (progress, signal) => {
       const message = await payload();
+      if (signal.aborted) throw new Cancelled('Cancelled.');
       const transfer = (message.files ?? []).map((file) => file.bytes.buffer);
       return app.engine.call('target', message, { progress, transfer });
     });

@@ -24,12 +24,12 @@ export class Work {
   /**
    * Runs something that may be long: shows progress, says what went wrong, drops answers that came too late.
    * @param {string} lane @param {string} label
-   * @param {(progress: (p: {stage: string, done: number}) => void) => Promise<any>} work
+   * @param {(progress: (p: {stage: string, done: number}) => void, signal: AbortSignal) => Promise<any>} work
    * @returns {Promise<any>} undefined if it was cancelled, failed, or something newer was started on the lane
    */
   async run(lane, label, work) {
     const turn = this.#next(lane);
-    const job = { lane, label, stage: label, done: 0, left: NaN, started: performance.now() };
+    const job = { lane, label, stage: label, done: 0, left: NaN, started: performance.now(), stop: new AbortController() };
     this.jobs.push(job);
     this.changed();
     const progress = ({ stage, done }) => {
@@ -38,7 +38,7 @@ export class Work {
       if (this.busy === job) this.changed();
     };
     try {
-      const answer = await work(progress);
+      const answer = await work(progress, job.stop.signal);
       return turn === this.turns.get(lane) ? answer : undefined;
     } catch (error) {
       if (!(error instanceof Cancelled) && turn === this.turns.get(lane)) this.say(error.message);
@@ -55,6 +55,7 @@ export class Work {
   }
 
   #next(lane) {
+    for (const job of this.jobs) if (job.lane === lane) job.stop.abort();
     const turn = (this.turns.get(lane) ?? 0) + 1;
     this.turns.set(lane, turn);
     return turn;

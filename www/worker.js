@@ -26,6 +26,7 @@ const operations = {
     return Engine.about();
   },
   open: ({ files, still, options }) => (still ? engine.open_more(still, files, options) : engine.open(files, options)),
+  needed: ({ file }) => Engine.needed(file),
   zoo: ({ recipe }) => engine.zoo(recipe),
   restore: ({ kept }) => engine.restore(kept),
   segment: ({ parameters }, progress) => engine.segment(parameters, progress),

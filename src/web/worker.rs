@@ -29,7 +29,7 @@ use glam::DVec3;
 use js_sys::{Array, Function, Object, Uint8Array, Uint32Array};
 use sequences::{describe, kept_sequence, look, parcel, rounded, written};
 use serde::Serialize;
-use values::{Reply, parsed, plain, put, read_files, sentence, single, triples};
+use values::{Reply, parsed, plain, put, read_file, read_files, sentence, single, triples};
 use wasm_bindgen::prelude::*;
 
 /// The open sequences and what is done with them.
@@ -102,6 +102,12 @@ impl Engine {
         let reply = self.opened(&imported)?;
         put(&reply, "joined", &joined.into())?;
         Ok(reply)
+    }
+
+    /// What an OBJ or its list of materials, `{name, bytes: Uint8Array}`, names that belongs to its look, as it is written
+    /// there.
+    pub fn needed(file: &JsValue) -> Reply {
+        plain(&import::needed_for_look(&read_file(file)?))
     }
 
     /// Makes a creature from a [`Recipe`] in its serde form; replies as [`Engine::open`] does.

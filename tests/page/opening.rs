@@ -156,6 +156,26 @@ fn without_any_gpu_all_but_the_picture_works() {
         "paint_clay",
         "new parts do not show where both figures are of clay"
     );
+    // What lies beside an OBJ of an address comes with it, and what is left out by Cancel is asked for no more.
+    page.evaluate(&format!(
+        "window.there = {{ 't.obj': {}, 'looks/t.mtl': {}, 'looks/t.png': Uint8Array.of(137, 80, 78, 71, 13, 10, 26, 10) }};
+        window.fetch = async (url) => {{ const found = there[new URL(url).pathname.split('/models/')[1]];
+            return new Response(found, {{ status: found ? 200 : 404 }}); }}",
+        serde_json::json!(TETRAHEDRON.replace("t.mtl", "looks\\t.mtl")),
+        serde_json::json!(MATERIALS)
+    ));
+    let opened = "sinew.app.opener.openAddress('models/t.obj').then(() => sinew.app.source.files.map(({ name }) => name).join())";
+    assert_eq!(page.evaluate_within(opened, 20.0), "t.obj,looks/t.mtl,looks/t.png");
+    let images = "sinew.app.parts.exportRigid().then(({ images }) => images)";
+    assert_eq!(page.evaluate_within(images, 20.0), 1, "they are in what is taken away");
+    page.evaluate(
+        "window.fetch = (url, { signal }) => new Promise((_, no) => signal.addEventListener('abort', () => no(signal.reason)))",
+    );
+    let cancelled = "(setTimeout(() => sinew.app.cancel(), 50), sinew.app.opener.openAddress('models/t.obj'))";
+    assert_eq!(page.evaluate_within(cancelled, 5.0), false);
+    assert_eq!(page.state()["error"], serde_json::Value::Null);
+    page.evaluate("sinew.app.undo()");
+    page.wait_until("sinew.state().source.name === 'snake' && !sinew.state().busy", 20.0);
     // A link opens its two figures in one step, and undo goes back over both.
     page.evaluate("location.hash = 'v1;zoo=octopus;faces=3000;target=cactus;target.faces=3000'");
     let there = "sinew.state().source.name === 'octopus' && sinew.state().target?.name === 'cactus'";

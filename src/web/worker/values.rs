@@ -16,7 +16,8 @@ pub fn read_files(files: &Array) -> Result<Vec<File>, JsValue> {
     files.iter().map(|file| read_file(&file)).collect()
 }
 
-fn read_file(file: &JsValue) -> Result<File, JsValue> {
+/// `{name, bytes: Uint8Array}`.
+pub fn read_file(file: &JsValue) -> Result<File, JsValue> {
     let name = field(file, "name")?.as_string().ok_or_else(|| sentence("A file has no name."))?;
     Ok(File { name, bytes: Uint8Array::from(field(file, "bytes")?).to_vec() })
 }
