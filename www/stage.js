@@ -141,7 +141,8 @@ export class Stage extends EventTarget {
   /** Builds the picture again from what is written down. */
   #restore() {
     const kept = this.kept;
-    this.#fit();
+    // Nothing of it is drawn before all is there: a dark page would light up.
+    this.#size();
     this.view.set_theme(kept.dark);
     this.view.set_insets(...kept.insets);
     this.view.set_room(Float32Array.from(kept.room));
@@ -172,17 +173,22 @@ export class Stage extends EventTarget {
    * the visitor would see nothing until the next frame, which may be long in coming.
    */
   #fit() {
-    const { width, height } = this.host.getBoundingClientRect();
-    this.visible = width >= 1 && height >= 1;
-    if (!this.visible || !this.view) return;
-    if (!this.view.resize(width, height, this.settled ? devicePixelRatio : this.pace.ratio)) return;
+    if (!this.#size()) return;
     this.wanted++;
     this.#draw(performance.now());
   }
 
-  /** While the graphics are behind, the old picture is stretched rather than one more asked for. */
+  /** @returns {boolean} whether it has other pixels now */
+  #size() {
+    const { width, height } = this.host.getBoundingClientRect();
+    this.visible = width >= 1 && height >= 1;
+    return this.visible && Boolean(this.view?.resize(width, height, this.settled ? devicePixelRatio : this.pace.ratio));
+  }
+
+  /** While the graphics are behind, the old picture fills the host, undistorted, rather than one more being asked for. */
   #resize() {
     this.unfit = this.view?.under_way() > 1;
+    this.canvas?.toggleAttribute('data-unfit', this.unfit);
     if (!this.unfit) this.#fit();
     this.#frameUnlessMoved();
   }
