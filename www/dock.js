@@ -46,7 +46,7 @@ export function dock(host, app) {
     else delete ribbon.dataset.more;
   };
   views.addEventListener('scroll', fade, { capture: true, passive: true });
-  new ResizeObserver(fade).observe(views);
+  new ResizeObserver(() => reveal()).observe(views);
   const update = () => {
     const { hidden } = host;
     const step = stepNamed(app.step);

@@ -54,7 +54,7 @@ export function share(sheet, app, timeline) {
   };
   const left = missing(app);
   show(sheet, h('h2', {}, 'Share'),
-    h('div', {}, h('label', { for: 'share-link', class: 'small faint' }, 'A link to exactly this'), field),
+    h('div', {}, h('label', { for: 'share-link', class: 'small faint' }, left ? 'A link, without what is your own' : 'A link to exactly this'), field),
     left && h('p', { class: 'warning' }, left),
     h('div', { class: 'actions' },
       button('copy-link', 'Copy link', copy(() => addressOf(app, timeline), 'Link copied.'), 'chip-button first'),

@@ -171,7 +171,7 @@ export class Studio {
         insets[seam] += inner - (stacked ? 0 : outer);
       }
       for (const stage of i ? [this.app.second] : [this.app.stage, this.app.third]) stage?.lie(insets, both ? margins : null);
-      this.captions[i].style.setProperty('left', `${(insets[0] + box.width - insets[2]) / 2}px`);
+      this.captions[i].style.setProperty('left', `${stacked ? insets[0] : (insets[0] + box.width - insets[2]) / 2}px`);
       this.captions[i].style.setProperty('top', `${insets[1]}px`);
     });
   }

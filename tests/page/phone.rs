@@ -73,6 +73,8 @@ fn nothing_clashes_on_a_desk() {
             page.rest(0.3);
             nothing_clashes(&mut page, name);
             assert!(!open || page.evaluate(sheet) == low, "{name}: the panel is a sheet from below or it is not");
+            let below = page.evaluate("document.querySelector('.below').clientHeight / innerHeight");
+            assert!(low || below.as_f64().is_some_and(|share| share < 0.35), "{name}: the picture has the room");
         }
     }
 }
