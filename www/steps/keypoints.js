@@ -61,7 +61,7 @@ function build(app) {
 }
 
 function introduction(app) {
-  if (!app.keypoints.hasMotion) return 'This one stands still. Key points are found from how a thing moves.';
+  if (!app.keypoints.hasMotion) return 'This one stands still, and key points are found from how a thing moves. Drop its poses here as well, or open something that moves.';
   if (app.keypoints.searching) return 'Looking for the few points that carry the whole motion …';
   return app.doc.count ? 'A few points whose motion carries all the rest. Drag one along the surface to move it.'
     : 'A few points whose motion carries all the rest.';
