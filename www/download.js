@@ -55,11 +55,12 @@ async function besideObj(main, url, get, signal, needed) {
     const found = [];
     for (const path of await needed({ name, bytes: new Uint8Array(await blob.slice(0, HEAD).arrayBuffer()) })) {
       const address = addressOf(path);
-      if (!address || known.has(folder + address)) continue;
+      // A line may name one file, with spaces in its name, or several: where it was one, its words are none.
+      if (!address || known.has(folder + address) || found.some(([, , whole]) => whole.split(/\s+/).includes(path))) continue;
       known.add(folder + address);
       for (const file of await ifThere(() => get(folder + address, url, decoded(folder + address)), signal)) {
         files.push(file);
-        found.push([file, (folder + address).replace(/[^/]*$/, '')]);
+        found.push([file, (folder + address).replace(/[^/]*$/, ''), path]);
       }
     }
     return found;

@@ -182,10 +182,12 @@ export class Stage extends EventTarget {
   #size() {
     const { width, height } = this.host.getBoundingClientRect();
     this.visible = width >= 1 && height >= 1;
+    // Its size, should the host have another one for a while.
+    if (this.visible) for (const [side, length] of Object.entries({ width, height })) this.canvas?.style.setProperty(`--${side}`, `${length}px`);
     return this.visible && Boolean(this.view?.resize(width, height, this.settled ? devicePixelRatio : this.pace.ratio));
   }
 
-  /** While the graphics are behind, the old picture fills the host, undistorted, rather than one more being asked for. */
+  /** While the graphics are behind, the old picture stays as large as it is, in the middle, rather than one more being asked for. */
   #resize() {
     this.unfit = this.view?.under_way() > 1;
     this.canvas?.toggleAttribute('data-unfit', this.unfit);

@@ -77,4 +77,11 @@ fn nothing_clashes_on_a_desk() {
             assert!(low || below.as_f64().is_some_and(|share| share < 0.35), "{name}: the picture has the room");
         }
     }
+    // Where the graphics are behind, what was drawn for another size is not distorted.
+    page.evaluate("sinew.app.stage.view.under_way = () => 9");
+    page.resize(Screen::Desktop);
+    page.wait_until("innerWidth === 1440 && document.querySelector('#stage canvas').hasAttribute('data-unfit')", 5.0);
+    let shape = "(({ clientWidth, clientHeight, width, height }) => clientWidth / clientHeight - width / height)\
+        (document.querySelector('#stage canvas'))";
+    assert!(page.evaluate(shape).as_f64().is_some_and(|change| change.abs() < 0.02));
 }
