@@ -9,6 +9,7 @@
 //! references in different postures ([`posed`]); that gives the positions of vertices, by a [`gradients::Mover`].
 
 pub mod alignment;
+mod bending;
 pub mod biharmonic;
 mod checked;
 pub mod correspondence;

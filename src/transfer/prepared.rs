@@ -1,6 +1,7 @@
 //! The transfer between one source and one target, ready for any pairs.
 
 use super::alignment::{Alignment, align};
+use super::bending::Bending;
 use super::biharmonic::{self, carried};
 use super::checked::checked;
 use super::growth::{grown, growth, shrunk};
@@ -8,10 +9,10 @@ use super::joints::Joints;
 use super::layers::{self, Pieces};
 use super::mend;
 use super::posture;
-use super::registration::{Effort, Foot, Ground, LOST, Pin, Registration, feet};
+use super::propose::Proposer;
+use super::registration::{Foot, LOST};
 use super::rig::Rig;
 use super::rig::weights::{Row, averaged, normalised};
-use super::spline::Spline;
 use super::surface::Surface;
 use super::{Method, Pair, Parameters, Skin, Transfer, TransferError};
 use crate::observer::Observer;
@@ -21,14 +22,13 @@ use crate::stopwatch::Stopwatch;
 use crate::warning::Warning;
 use crate::weights::{self, Biharmonic, Weights};
 use glam::{DAffine3, DVec3};
+use std::sync::Arc;
 
 /// Rounds in which weights on a target of [`SMOOTHED`] vertices are averaged with their neighbours', and the most rounds on
 /// finer ones.
 const SMOOTHING: usize = 5;
 const SMOOTHED: usize = 3000;
 const MOST_SMOOTHING: usize = 24;
-/// How far the shape that the bent target keeps is that which the pairs suggest, not its own.
-const BELIEF: f64 = 0.5;
 /// While a point is dragged, every so manieth pose is looked at for tears.
 const FEWER: usize = 3;
 /// Bones that a vertex of the target may follow.
@@ -47,12 +47,10 @@ pub struct Prepared {
     rig: Rig,
     /// By how much edges of the target may become longer.
     allowed: f64,
-    ground: Ground,
-    registration: Registration,
+    bending: Bending,
     /// Of the source and of the target, for the methods that blend by the weights of the key points.
     weights: Option<[Biharmonic; 2]>,
-    /// The bent target of the result before, from which the next starts while a point is dragged; or its weights.
-    last: Option<Vec<DVec3>>,
+    /// The weights of the result before, from which the next start while a point is dragged.
     last_weights: Option<[Weights; 2]>,
     /// How motions of the source become motions of the target's handles, since the last result.
     carrier: Option<Carrier>,
@@ -76,6 +74,17 @@ impl Prepared {
         parameters: &Parameters,
         observer: &mut dyn Observer,
     ) -> Result<Self, TransferError> {
+        Self::with_proposer(source, target, parameters, None, observer)
+    }
+
+    /// As [`Prepared::new`], where there is already a proposer for these two meshes.
+    pub fn with_proposer(
+        source: &Sequence,
+        target: &Sequence,
+        parameters: &Parameters,
+        proposer: Option<Arc<Proposer>>,
+        observer: &mut dyn Observer,
+    ) -> Result<Self, TransferError> {
         let mut steps = Stopwatch::new(observer);
         let acting = source.acting();
         let source = acting.as_ref();
@@ -92,8 +101,16 @@ impl Prepared {
             poses = poses.into_iter().zip(&growths).map(|(pose, &growth)| shrunk(pose, growth)).collect();
         }
         steps.end("surfaces", 0.1)?;
-        let registration = Registration::new(&there).map_err(|_| TransferError::Degenerate { side: "target" })?;
-        steps.end("systems", 0.3)?;
+        let proposer = match parameters.method {
+            Method::Direct | Method::Relative => None,
+            _ => proposer.or_else(|| {
+                let [from, to] = [source, target].map(|sequence| (sequence.faces(), sequence.reference()));
+                Proposer::new(from.0, from.1, to.0, to.1).ok().map(Arc::new)
+            }),
+        };
+        steps.end("common places", 0.3)?;
+        let bending = Bending::new(&here, &there, proposer)?;
+        steps.end("systems", 0.5)?;
         let rig = match parameters.method {
             Method::Bones | Method::Gradients | Method::Posed => Rig::new(&here, &poses, parameters.bones.max(1)),
             Method::Direct | Method::Relative => Rig::default(),
@@ -109,7 +126,6 @@ impl Prepared {
         };
         let telling: Vec<&[DVec3]> = rig.telling.iter().filter_map(|&p| Some(poses.get(p)?.as_slice())).collect();
         let allowed = mend::allowed(&here, &telling);
-        let ground = Ground::new(&here);
         steps.end("search", 1.0)?;
         let mut warnings = Vec::new();
         if rig.error > ROUGH {
@@ -131,10 +147,8 @@ impl Prepared {
             growths,
             rig,
             allowed,
-            ground,
-            registration,
+            bending,
             weights,
-            last: None,
             last_weights: None,
             carrier: None,
             warnings,
@@ -185,12 +199,10 @@ impl Prepared {
         let alignment = align(&points);
         let skin = match self.parameters.method {
             Method::Bones | Method::Gradients | Method::Posed => {
-                let last = self.last.take().filter(|_| quick);
-                let bent = self.bend(&pairs, &points, alignment, last);
+                let bent = self.bending.bend((&self.source, &self.target), &pairs, alignment, quick);
                 steps.end("correspondence", 0.8)?;
                 let step = if quick { FEWER } else { 1 };
                 let (skin, joints) = self.by_bones(alignment, &pairs, &bent, step, &mut warnings);
-                self.last = Some(bent);
                 self.carrier = Some(Carrier::Bones(joints));
                 skin
             }
@@ -219,30 +231,6 @@ impl Prepared {
         (at(&self.source, pair.source), at(&self.target, pair.target))
     }
 
-    /// The target bent onto the source; `last` is the result before, if the next is to start from it.
-    fn bend(
-        &self,
-        pairs: &[Pair],
-        points: &[(DVec3, DVec3)],
-        alignment: Alignment,
-        last: Option<Vec<DVec3>>,
-    ) -> Vec<DVec3> {
-        let target = &self.target;
-        let rest: Vec<DVec3> = target.positions.iter().map(|&p| alignment.invert(p)).collect();
-        let pins: Vec<Pin> = pairs
-            .iter()
-            .zip(points)
-            .map(|(pair, point)| Pin { vertex: target.place[pair.target as usize], point: point.0 })
-            .collect();
-        // The shape that the bent target keeps as far as it can lies between its own and the one with its points where they
-        // belong: proportions differ, and so do poses.
-        let placed = splined(&rest, &rest, &pins);
-        let shape: Vec<DVec3> = rest.iter().zip(&placed).map(|(r, p)| r.lerp(*p, BELIEF)).collect();
-        let effort = if last.is_some() { Effort::Last } else { Effort::Whole };
-        let start = last.map_or(placed, |last| splined(&rest, &last, &pins));
-        self.registration.bend((&self.source, &self.ground), target, &shape, start, &pins, effort)
-    }
-
     /// Every `step`th of the telling poses is looked at for tears.
     fn by_bones(
         &self,
@@ -252,7 +240,7 @@ impl Prepared {
         step: usize,
         warnings: &mut Vec<Warning>,
     ) -> (Skin, Joints) {
-        let feet = feet(&self.source, &self.ground, &self.target, bent);
+        let feet = self.bending.feet(&self.source, &self.target, bent);
         let mut rows: Vec<Row> = feet.iter().map(|foot| self.pulled(foot.map(|f| f.0))).collect();
         let lost: Vec<bool> = feet.iter().map(|foot| foot.is_none_or(|f| f.1 > LOST)).collect();
         mend::fill(&self.target, &mut rows, &lost);
@@ -377,11 +365,4 @@ impl Prepared {
             maps,
         }
     }
-}
-
-/// Points displaced smoothly so that pinned ones come to lie where they belong; the spline is over the points at `rest`.
-fn splined(rest: &[DVec3], points: &[DVec3], pins: &[Pin]) -> Vec<DVec3> {
-    let missing = |pin: &Pin| (rest[pin.vertex as usize], pin.point - points[pin.vertex as usize]);
-    let spline = Spline::new(&pins.iter().map(missing).collect::<Vec<_>>());
-    points.iter().zip(rest).map(|(&p, &r)| p + spline.at(r)).collect()
 }

@@ -23,8 +23,9 @@ mod surface;
 mod tips;
 mod ways;
 
+use super::Pair;
 use consensus::{Consensus, LAST};
-use crowd::{COMPANY, Figures};
+use crowd::{COMPANY, Crowd, Figures};
 use glam::DVec3;
 use refine::{Found, Refiner};
 use serde::Serialize;
@@ -117,6 +118,29 @@ impl Proposer {
     /// Proposes a target vertex for every point (source vertices) whose place is not `known`.
     pub fn propose(&self, points: &[u32], known: &[Option<u32>]) -> Result<Proposals, ProposeError> {
         self.check(points, known)?;
+        let (crowd, at) = self.gather(points, known);
+        Ok(self.read(&self.figures().agree(&crowd, at, &REACHES_WITH_TIPS), points, known))
+    }
+
+    /// Pairs all over both figures that seem to belong together if the given ones do. None of them is exact: they tell how
+    /// one figure lies on the other.
+    pub fn guides(&self, pairs: &[Pair]) -> Result<Vec<Pair>, ProposeError> {
+        let points: Vec<u32> = pairs.iter().map(|pair| pair.source).collect();
+        let known: Vec<Option<u32>> = pairs.iter().map(|pair| Some(pair.target)).collect();
+        self.check(&points, &known)?;
+        let (crowd, at) = self.gather(&points, &known);
+        let consensus = self.figures().agree(&crowd, at, &REACHES_WITH_TIPS);
+        let company = consensus.trusted(usize::MAX).filter(|&i| i < crowd.company);
+        let pair = |i: usize| {
+            let target = self.target.samples[consensus.at[i]? as usize];
+            Some(Pair { source: self.source.samples[i], target })
+        };
+        Ok(company.filter_map(pair).collect())
+    }
+
+    /// Those who look for their places, and where they find them before the last rounds; tips that have met hold on to each
+    /// other.
+    fn gather(&self, points: &[u32], known: &[Option<u32>]) -> (Crowd, Vec<Option<u32>>) {
         let figures = self.figures();
         let mut crowd = figures.crowd(COMPANY[1], points, known);
         let at = stands::best(figures, &self.stands, &crowd);
@@ -124,7 +148,7 @@ impl Proposer {
             let place = || figures.place(self.target.samples[other as usize]);
             crowd.points[tip as usize].given.get_or_insert_with(place);
         }
-        Ok(self.read(&figures.agree(&crowd, at, &REACHES_WITH_TIPS), points, known))
+        (crowd, at)
     }
 
     fn figures(&self) -> Figures<'_> {

@@ -29,6 +29,7 @@ use glam::DVec3;
 use js_sys::{Array, Function, Object, Uint8Array, Uint32Array};
 use sequences::{describe, kept_sequence, look, parcel, rounded, written};
 use serde::Serialize;
+use std::sync::Arc;
 use values::{Reply, parsed, plain, put, read_file, read_files, sentence, single, triples};
 use wasm_bindgen::prelude::*;
 
@@ -42,7 +43,7 @@ pub struct Engine {
     target: Option<Sequence>,
     /// What was prepared for the target, for the two together, and the last motion.
     target_field: Option<Biharmonic>,
-    proposer: Option<Proposer>,
+    proposer: Option<Arc<Proposer>>,
     prepared: Option<(transfer::Parameters, Prepared)>,
     moved: Option<Transfer>,
     /// The same for methods that move vertices.

@@ -11,6 +11,7 @@ use crate::transfer::propose::Proposer;
 use crate::weights::Biharmonic;
 use crate::zoo::{self, Recipe};
 use js_sys::{Array, Object, Uint32Array};
+use std::sync::Arc;
 use wasm_bindgen::prelude::*;
 
 #[wasm_bindgen]
@@ -47,16 +48,9 @@ impl Engine {
 
     /// Proposes where `points` of the source lie on the target; `known` has a vertex or −1 for each of them.
     pub fn propose(&mut self, points: &[u32], known: &[i32]) -> Reply {
-        let retained = self.proposer.take();
-        let (source, target) = (self.open_sequence()?, self.open_target()?);
-        let proposer = match retained {
-            Some(proposer) => proposer,
-            None => Proposer::new(&source.acting_faces(), source.reference(), target.faces(), target.reference())
-                .map_err(sentence)?,
-        };
+        let proposer = self.proposer()?;
         let known: Vec<Option<u32>> = known.iter().map(|&vertex| u32::try_from(vertex).ok()).collect();
         let proposals = proposer.propose(points, &known).map_err(sentence)?;
-        self.proposer = Some(proposer);
         let reply: JsValue = Object::new().into();
         let targets: Vec<u32> = proposals.points.iter().map(|point| point.target).collect();
         let confidences: Vec<f64> = proposals.points.iter().map(|point| point.confidence).collect();
@@ -96,6 +90,18 @@ impl Engine {
 impl Engine {
     pub(super) fn open_target(&self) -> Result<&Sequence, JsValue> {
         self.target.as_ref().ok_or_else(|| sentence("No target is open yet."))
+    }
+
+    /// Who finds places of the source on the target.
+    pub(super) fn proposer(&mut self) -> Result<Arc<Proposer>, JsValue> {
+        if let Some(proposer) = &self.proposer {
+            return Ok(proposer.clone());
+        }
+        let (source, target) = (self.open_sequence()?, self.open_target()?);
+        let made = Proposer::new(&source.acting_faces(), source.reference(), target.faces(), target.reference());
+        let proposer = Arc::new(made.map_err(sentence)?);
+        self.proposer = Some(proposer.clone());
+        Ok(proposer)
     }
 
     fn replace_target(&mut self, target: Option<Sequence>) {

@@ -1,0 +1,147 @@
+//! The target bent onto the source: from what the pairs say alone and from what the surfaces seem to have in common, and
+//! the better of the two counts.
+//!
+//! Few pairs leave much open: where one of them has to do for a head that is held another way, the nearest points are
+//! those of the wrong side of it. What proposals would be made all over the figure ([`Proposer::guides`]) is not exact,
+//! but tells which way a limb goes; the surfaces say the rest.
+
+use super::alignment::Alignment;
+use super::propose::Proposer;
+use super::registration::{Effort, Foot, Ground, LOST, Pin, Registration, feet};
+use super::spline::Spline;
+use super::surface::Surface;
+use super::{Pair, TransferError};
+use glam::DVec3;
+use std::sync::Arc;
+
+/// How far the shape that the bent target keeps is that which the pairs suggest, not its own.
+const BELIEF: f64 = 0.5;
+/// How far the spline through guides may miss them, as a length in the unit ball: they are not exact.
+const LOOSE: f64 = 0.1;
+
+/// What is needed to bend one target onto one source, and the last result.
+pub struct Bending {
+    ground: Ground,
+    registration: Registration,
+    /// Who gives guides, if anybody does.
+    proposer: Option<Arc<Proposer>>,
+    last: Option<Bent>,
+}
+
+/// A target bent onto its source, both in the source's unit ball: #N positions of its vertices.
+struct Bent {
+    /// Where they were thought to lie before the points of the pairs came to theirs.
+    thought: Vec<DVec3>,
+    /// Where they lie.
+    at: Vec<DVec3>,
+}
+
+impl Bending {
+    /// Factors the systems of the target.
+    pub fn new(source: &Surface, target: &Surface, proposer: Option<Arc<Proposer>>) -> Result<Self, TransferError> {
+        let registration = Registration::new(target).map_err(|_| TransferError::Degenerate { side: "target" })?;
+        Ok(Self { ground: Ground::new(source), registration, proposer, last: None })
+    }
+
+    /// #N positions of the target's vertices, bent onto the source. If it is to be `quick`, from the result before, if
+    /// there is one.
+    pub fn bend(
+        &mut self,
+        surfaces: (&Surface, &Surface),
+        pairs: &[Pair],
+        alignment: Alignment,
+        quick: bool,
+    ) -> Vec<DVec3> {
+        let (source, target) = surfaces;
+        let rest: Vec<DVec3> = target.positions.iter().map(|&p| alignment.invert(p)).collect();
+        let pins = pins(source, target, pairs);
+        let bent = match self.last.take().filter(|_| quick) {
+            Some(Bent { thought, at }) => {
+                let start = displaced(&rest, &at, &pins);
+                let at = self.bent_from(surfaces, &rest, &thought, start, &pins, Effort::Last);
+                Bent { thought, at }
+            }
+            None => self.afresh(surfaces, rest, pairs, &pins),
+        };
+        let at = bent.at.clone();
+        self.last = Some(bent);
+        at
+    }
+
+    /// For each vertex of the bent target its place on the source, and how far that is.
+    pub fn feet(&self, source: &Surface, target: &Surface, bent: &[DVec3]) -> Vec<Option<(Foot, f64)>> {
+        feet(source, &self.ground, target, bent)
+    }
+
+    /// The better of what comes of the pairs alone and of pairs and guides.
+    fn afresh(&self, surfaces: (&Surface, &Surface), rest: Vec<DVec3>, pairs: &[Pair], pins: &[Pin]) -> Bent {
+        let (source, target) = surfaces;
+        let from = |thought: Vec<DVec3>| {
+            let start = displaced(&rest, &thought, pins);
+            let at = self.bent_from(surfaces, &rest, &thought, start, pins, Effort::Whole);
+            Bent { thought, at }
+        };
+        let alone = from(rest.clone());
+        // Pairs that are out of range were refused before.
+        let guides = self.proposer.as_ref().and_then(|proposer| proposer.guides(pairs).ok()).unwrap_or_default();
+        if guides.is_empty() {
+            return alone;
+        }
+        let mut all = self::pins(source, target, &guides);
+        all.extend_from_slice(pins);
+        let guided = from(smoothed(&rest, &all, LOOSE));
+        let misfit = |bent: &Bent| misfit(source, &self.ground, target, &bent.at);
+        if misfit(&guided) < misfit(&alone) { guided } else { alone }
+    }
+
+    /// Bends the target from a start. The shape that it keeps as far as it can lies between its own and the one that it was
+    /// thought to have, with its points where they belong: proportions differ, and so do poses.
+    fn bent_from(
+        &self,
+        (source, target): (&Surface, &Surface),
+        rest: &[DVec3],
+        thought: &[DVec3],
+        start: Vec<DVec3>,
+        pins: &[Pin],
+        effort: Effort,
+    ) -> Vec<DVec3> {
+        let placed = displaced(rest, thought, pins);
+        let shape: Vec<DVec3> = rest.iter().zip(&placed).map(|(r, p)| r.lerp(*p, BELIEF)).collect();
+        self.registration.bend((source, &self.ground), target, &shape, start, pins, effort)
+    }
+}
+
+/// Vertices of the target and where they belong on the source.
+fn pins(source: &Surface, target: &Surface, pairs: &[Pair]) -> Vec<Pin> {
+    let pin = |pair: &Pair| {
+        let [from, to] = [target.place[pair.target as usize], source.place[pair.source as usize]];
+        Pin { vertex: from, point: source.positions[to as usize] }
+    };
+    pairs.iter().map(pin).collect()
+}
+
+/// Points displaced smoothly so that pinned ones come to lie where they belong; the spline is over the points at `rest`.
+fn displaced(rest: &[DVec3], points: &[DVec3], pins: &[Pin]) -> Vec<DVec3> {
+    let missing = |pin: &Pin| (rest[pin.vertex as usize], pin.point - points[pin.vertex as usize]);
+    let spline = Spline::new(&pins.iter().map(missing).collect::<Vec<_>>());
+    points.iter().zip(rest).map(|(&p, &r)| p + spline.at(r)).collect()
+}
+
+/// The same from `rest`, where pins are not exact.
+fn smoothed(rest: &[DVec3], pins: &[Pin], loose: f64) -> Vec<DVec3> {
+    let missing = |pin: &Pin| (rest[pin.vertex as usize], pin.point - rest[pin.vertex as usize]);
+    let spline = Spline::loose(&pins.iter().map(missing).collect::<Vec<_>>(), loose);
+    rest.iter().map(|&r| r + spline.at(r)).collect()
+}
+
+/// How badly a bent target lies on the source: the mean distances of either from the other, over their areas; what is farther
+/// than [`LOST`] has no twin, however far it is.
+fn misfit(source: &Surface, ground: &Ground, target: &Surface, bent: &[DVec3]) -> f64 {
+    let mean = |of: &Surface, feet: Vec<Option<(Foot, f64)>>| {
+        let far = feet.iter().zip(&of.mass).map(|(foot, mass)| mass * foot.map_or(LOST, |foot| foot.1.min(LOST)));
+        far.sum::<f64>() / of.mass.iter().sum::<f64>().max(f64::MIN_POSITIVE)
+    };
+    let lying = target.bent(bent.to_vec());
+    let back = feet(&lying, &Ground::new(&lying), source, &source.positions);
+    mean(target, feet(source, ground, target, bent)) + mean(source, back)
+}
