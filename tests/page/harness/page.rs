@@ -16,8 +16,8 @@ pub enum Screen {
     Desktop,
     /// 960 × 640, a mouse: for what does not depend on the size, because drawing without a graphics card is slow.
     Small,
-    /// The same for a visitor who wants little motion: for what does not depend on it, because nothing is drawn then
-    /// while nothing happens.
+    /// The same for a visitor who wants little motion and nothing transparent: for what does not depend on it, because
+    /// nothing is drawn then while nothing happens, and nothing blurred behind the controls.
     Still,
     /// 390 × 844 at two device pixels to a CSS pixel, touch.
     Phone,
@@ -118,7 +118,7 @@ impl Page {
         self.call("Emulation.setDeviceMetricsOverride", metrics);
         self.call("Emulation.setTouchEmulationEnabled", json!({ "enabled": phone, "maxTouchPoints": 5 }));
         if screen == Screen::Still {
-            self.prefer(&[("prefers-reduced-motion", "reduce")]);
+            self.prefer(&[("prefers-reduced-motion", "reduce"), ("prefers-reduced-transparency", "reduce")]);
         }
     }
 
