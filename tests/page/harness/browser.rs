@@ -123,6 +123,8 @@ const ARGUMENTS: &[&str] = &[
     "--hide-scrollbars",
     "--mute-audio",
     "--force-color-profile=srgb",
+    // All tabs of the page run in the process that has its wasm compiled: see `Browser::keep_compiled`.
+    "--process-per-site",
 ];
 
 /// WebGPU without a graphics card. With only some of these there is an adapter, but the canvas stays blank.
@@ -162,8 +164,38 @@ impl Browser {
             }
         });
         let mut browser = Self { input, messages, events: VecDeque::new(), last: 0, process };
-        browser.call("Browser.getVersion", json!({}), None);
+        browser.keep_compiled();
         browser
+    }
+
+    /// Has the page's wasm compiled in a tab that stays open. Every tab of the page runs in its process and finds there what
+    /// the tabs before it have compiled and optimised, which otherwise each would do again.
+    fn keep_compiled(&mut self) {
+        let (tab, session) = self.open_tab(None);
+        // A text, not the page: it only has to come from where the page does.
+        let address = served() + "www/wasm.js";
+        self.call("Page.navigate", json!({ "url": address }), Some(&session));
+        let compile = "Promise.all(['page', 'worker'].map((name) =>
+            WebAssembly.compileStreaming(fetch(new URL(`../pkg/${name}_bg.wasm`, location.href)))))
+            .then((all) => { window.kept = all; return all.length; })";
+        let parameters = json!({ "expression": compile, "awaitPromise": true });
+        let answer = self.call("Runtime.evaluate", parameters, Some(&session));
+        assert_eq!(answer["result"]["value"], 2, "the wasm at {address} does not compile in tab {tab}: {answer}");
+        self.call("Target.detachFromTarget", json!({ "sessionId": session }), None);
+    }
+
+    /// Opens an empty tab, with all others or in a context of its own, which shares nothing with them. Returns the names of
+    /// the tab and of a session in it.
+    pub fn open_tab(&mut self, context: Option<&str>) -> (String, String) {
+        let mut place = json!({ "url": "about:blank" });
+        if let Some(context) = context {
+            place["browserContextId"] = json!(context);
+        }
+        let tab = self.call("Target.createTarget", place, None)["targetId"].take();
+        let attach = json!({ "targetId": tab, "flatten": true });
+        let session = self.call("Target.attachToTarget", attach, None)["sessionId"].take();
+        let name = |value: Value| value.as_str().expect("the browser names what it opens").to_owned();
+        (name(tab), name(session))
     }
 
     /// Calls a method, in a session if one is given, and returns its result. An error of the protocol fails the test.
@@ -268,6 +300,12 @@ fn fresh_profile(backend: Backend, place: usize) -> PathBuf {
         }
     }
     scratch.join(format!("{start}{}", std::process::id()))
+}
+
+/// Where the page is served.
+pub fn served() -> String {
+    std::env::var("SINEW_PAGE")
+        .expect("SINEW_PAGE is not set: these tests need the built page on a server; `cargo xtask test` does all that")
 }
 
 /// The browser to run: the variable `CHROMIUM`, or the first of the usual names on the path.

@@ -1,6 +1,6 @@
 //! A tab with the page in it, and everything that a visitor can do to it.
 
-use super::browser::{Backend, Browser, Lease, PATIENCE};
+use super::browser::{Backend, Browser, Lease, PATIENCE, served};
 use super::picture::Picture;
 use base64::{Engine, engine::general_purpose::STANDARD};
 use serde_json::{Value, json};
@@ -32,6 +32,8 @@ pub struct Page {
     lease: Lease,
     backend: Backend,
     screen: Screen,
+    /// The context of the tab, if it has one of its own.
+    context: Option<String>,
     target: String,
     session: String,
     /// The tab's session and those of its workers.
@@ -51,22 +53,23 @@ impl Page {
         Self::open_at(served(), backend, screen, tail)
     }
 
-    /// The same for what measures time: no other page is open meanwhile.
+    /// The same for what measures time: no other page is open meanwhile, and nothing is left of those before, as if the
+    /// visitor came for the first time.
     pub fn open_alone(backend: Backend, screen: Screen, tail: &str) -> Self {
-        Self::open_in(Lease::take(true), served(), backend, screen, tail)
+        Self::open_in(Lease::take(true), true, served(), backend, screen, tail)
     }
 
     /// Opens another page: `tail` after the given address.
     pub fn open_at(address: String, backend: Backend, screen: Screen, tail: &str) -> Self {
-        Self::open_in(Lease::take(false), address, backend, screen, tail)
+        Self::open_in(Lease::take(false), false, address, backend, screen, tail)
     }
 
-    fn open_in(mut lease: Lease, address: String, backend: Backend, screen: Screen, tail: &str) -> Self {
+    fn open_in(mut lease: Lease, fresh: bool, address: String, backend: Backend, screen: Screen, tail: &str) -> Self {
         let begun = clock::seconds();
         let browser = lease.place.browser(backend);
-        let target = text(&browser.call("Target.createTarget", json!({ "url": "about:blank" }), None)["targetId"]);
-        let attach = json!({ "targetId": target, "flatten": true });
-        let session = text(&browser.call("Target.attachToTarget", attach, None)["sessionId"]);
+        let context =
+            fresh.then(|| text(&browser.call("Target.createBrowserContext", json!({}), None)["browserContextId"]));
+        let (target, session) = browser.open_tab(context.as_deref());
         let sessions = BTreeSet::from([session.clone()]);
         let (problems, expected, log) = (Vec::new(), Vec::new(), Vec::new());
         let mut page = Self {
@@ -74,6 +77,7 @@ impl Page {
             begun,
             backend,
             screen,
+            context,
             target,
             session,
             sessions,
@@ -392,6 +396,14 @@ impl Page {
         self.lease.place.browser(self.backend)
     }
 
+    /// How to close the tab, with its context if that is its own.
+    fn closing(&self) -> (&'static str, Value) {
+        match &self.context {
+            Some(context) => ("Target.disposeBrowserContext", json!({ "browserContextId": context })),
+            None => ("Target.closeTarget", json!({ "targetId": self.target })),
+        }
+    }
+
     /// Sorts what has happened, or happens first within some seconds, into problems and the rest.
     fn listen(&mut self, seconds: f64) {
         for event in self.browser().events(seconds) {
@@ -431,13 +443,13 @@ impl Drop for Page {
         eprintln!("the page was open for {:.1} s", clock::seconds() - self.begun);
         if std::thread::panicking() {
             // The first failure is the one to report; the tab only has to go.
-            let target = self.target.clone();
-            self.browser().send("Target.closeTarget", json!({ "targetId": target }), None);
+            let (method, parameters) = self.closing();
+            self.browser().send(method, parameters, None);
             return;
         }
         let problems = self.problems();
-        let target = self.target.clone();
-        self.browser().call("Target.closeTarget", json!({ "targetId": target }), None);
+        let (method, parameters) = self.closing();
+        self.browser().call(method, parameters, None);
         assert!(problems.is_empty(), "the page had problems: {problems:#?}\nconsole: {:#?}", self.log);
     }
 }
@@ -486,12 +498,6 @@ fn exception(details: &Value) -> String {
 
 fn text(value: &Value) -> String {
     value.as_str().unwrap_or_default().to_owned()
-}
-
-/// Where the page is served.
-fn served() -> String {
-    std::env::var("SINEW_PAGE")
-        .expect("SINEW_PAGE is not set: these tests need the built page on a server; `cargo xtask test` does all that")
 }
 
 /// Where screenshots are kept.
