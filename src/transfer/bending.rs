@@ -1,5 +1,5 @@
-//! The target bent onto the source: from what the pairs say alone and from what the surfaces seem to have in common, and
-//! the better of the two counts.
+//! The target bent onto the source: from what the pairs say and what the surfaces seem to have in common, or from the pairs
+//! alone if that fits better.
 //!
 //! Few pairs leave much open: where one of them has to do for a head that is held another way, the nearest points are
 //! those of the wrong side of it. What proposals would be made all over the figure ([`Proposer::guides`]) is not exact,
@@ -18,6 +18,9 @@ use std::sync::Arc;
 const BELIEF: f64 = 0.5;
 /// How far the spline through guides may miss them, as a length in the unit ball: they are not exact.
 const LOOSE: f64 = 0.1;
+
+/// A [`misfit`] below which no other is sought.
+const WELL: f64 = 0.01;
 
 /// What is needed to bend one target onto one source, and the last result.
 pub struct Bending {
@@ -73,7 +76,7 @@ impl Bending {
         feet(source, &self.ground, target, bent)
     }
 
-    /// The better of what comes of the pairs alone and of pairs and guides.
+    /// What comes of pairs and guides, or of the pairs alone if that is better.
     fn afresh(&self, surfaces: (&Surface, &Surface), rest: Vec<DVec3>, pairs: &[Pair], pins: &[Pin]) -> Bent {
         let (source, target) = surfaces;
         let from = |thought: Vec<DVec3>| {
@@ -81,17 +84,22 @@ impl Bending {
             let at = self.bent_from(surfaces, &rest, &thought, start, pins, Effort::Whole);
             Bent { thought, at }
         };
-        let alone = from(rest.clone());
+        let alone = || from(rest.clone());
         // Pairs that are out of range were refused before.
         let guides = self.proposer.as_ref().and_then(|proposer| proposer.guides(pairs).ok()).unwrap_or_default();
         if guides.is_empty() {
-            return alone;
+            return alone();
         }
         let mut all = self::pins(source, target, &guides);
         all.extend_from_slice(pins);
-        let guided = from(smoothed(&rest, &all, LOOSE));
+        let guided = from(smoothed(&rest, &all));
         let misfit = |bent: &Bent| misfit(source, &self.ground, target, &bent.at);
-        if misfit(&guided) < misfit(&alone) { guided } else { alone }
+        let found = misfit(&guided);
+        if found < WELL {
+            return guided;
+        }
+        let alone = alone();
+        if misfit(&alone) < found { alone } else { guided }
     }
 
     /// Bends the target from a start. The shape that it keeps as far as it can lies between its own and the one that it was
@@ -128,9 +136,9 @@ fn displaced(rest: &[DVec3], points: &[DVec3], pins: &[Pin]) -> Vec<DVec3> {
 }
 
 /// The same from `rest`, where pins are not exact.
-fn smoothed(rest: &[DVec3], pins: &[Pin], loose: f64) -> Vec<DVec3> {
+fn smoothed(rest: &[DVec3], pins: &[Pin]) -> Vec<DVec3> {
     let missing = |pin: &Pin| (rest[pin.vertex as usize], pin.point - rest[pin.vertex as usize]);
-    let spline = Spline::loose(&pins.iter().map(missing).collect::<Vec<_>>(), loose);
+    let spline = Spline::loose(&pins.iter().map(missing).collect::<Vec<_>>(), LOOSE);
     rest.iter().map(|&r| r + spline.at(r)).collect()
 }
 

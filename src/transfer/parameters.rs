@@ -53,4 +53,10 @@ impl Method {
     pub fn moves_vertices(self) -> bool {
         matches!(self, Self::Gradients | Self::Posed)
     }
+
+    /// Whether a [`Prepared`](super::Prepared) takes the source apart into bones for it, and not the motions of the key
+    /// points alone.
+    pub fn by_bones(self) -> bool {
+        !matches!(self, Self::Direct | Self::Relative)
+    }
 }

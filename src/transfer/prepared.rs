@@ -96,33 +96,31 @@ impl Prepared {
         let (here, there) = (here?, there?);
         let mut poses: Vec<Vec<DVec3>> = source.poses().iter().map(|pose| here.unit(&pose.positions)).collect();
         let mut growths = vec![1.0; poses.len()];
-        if !matches!(parameters.method, Method::Direct | Method::Relative) {
+        if parameters.method.by_bones() {
             growths = poses.iter().map(|pose| growth(&here, pose)).collect();
             poses = poses.into_iter().zip(&growths).map(|(pose, &growth)| shrunk(pose, growth)).collect();
         }
         steps.end("surfaces", 0.1)?;
-        let proposer = match parameters.method {
-            Method::Direct | Method::Relative => None,
-            _ => proposer.or_else(|| {
-                let [from, to] = [source, target].map(|sequence| (sequence.faces(), sequence.reference()));
-                Proposer::new(from.0, from.1, to.0, to.1).ok().map(Arc::new)
-            }),
-        };
+        let [from, to] = [source, target].map(|sequence| (sequence.faces(), sequence.reference()));
+        let made = || Proposer::new(from.0, from.1, to.0, to.1).ok().map(Arc::new);
+        let proposer = if parameters.method.by_bones() { proposer.or_else(made) } else { None };
         steps.end("common places", 0.3)?;
         let bending = Bending::new(&here, &there, proposer)?;
         steps.end("systems", 0.5)?;
-        let rig = match parameters.method {
-            Method::Bones | Method::Gradients | Method::Posed => Rig::new(&here, &poses, parameters.bones.max(1)),
-            Method::Direct | Method::Relative => Rig::default(),
+        let rig = if parameters.method.by_bones() {
+            Rig::new(&here, &poses, parameters.bones.max(1))
+        } else {
+            Rig::default()
         };
         steps.end("bones", 0.9)?;
         let of_source: Vec<&[DVec3]> = source.poses().iter().map(|pose| pose.positions.as_slice()).collect();
-        let weights = match parameters.method {
-            Method::Bones | Method::Gradients | Method::Posed => None,
-            Method::Direct | Method::Relative => Some([
+        let weights = if parameters.method.by_bones() {
+            None
+        } else {
+            Some([
                 Biharmonic::with_poses(source.faces(), source.reference(), &of_source)?,
                 Biharmonic::new(target.faces(), target.reference())?,
-            ]),
+            ])
         };
         let telling: Vec<&[DVec3]> = rig.telling.iter().filter_map(|&p| Some(poses.get(p)?.as_slice())).collect();
         let allowed = mend::allowed(&here, &telling);

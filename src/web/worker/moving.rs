@@ -7,7 +7,7 @@ use super::watcher;
 use crate::export::animation;
 use crate::export::skin::{self, Influences, SkinPose};
 use crate::memory::Step;
-use crate::transfer::{Method, Pair, Parameters, Prepared};
+use crate::transfer::{Pair, Parameters, Prepared};
 use js_sys::{Array, Float32Array, Function, Object, Uint16Array};
 use wasm_bindgen::prelude::*;
 
@@ -29,10 +29,7 @@ impl Engine {
             Some((made_with, prepared)) if made_with == parameters => prepared,
             _ => {
                 self.room_for(Step::Transfer(self.open_target()?.sizes()), self.open_sequence()?)?;
-                let proposer = match parameters.method {
-                    Method::Direct | Method::Relative => None,
-                    _ => Some(self.proposer()?),
-                };
+                let proposer = if parameters.method.by_bones() { Some(self.proposer()?) } else { None };
                 let (source, target) = (self.open_sequence()?, self.open_target()?);
                 let made = Prepared::with_proposer(source, target, &parameters, proposer, &mut observer);
                 let made = made.map_err(sentence)?;
