@@ -19,7 +19,7 @@ const RECIPE = ['faces', 'poses', 'exact', 'motion', 'size', 'build', 'head', 'n
 const CALLED = { zoo: 'a creature', target: 'a target', step: 'a step', motion: 'a motion' };
 
 /** @returns {Record<string, string>} empty if there is no state, or one of another version */
-export function readLink(hash = location.hash) {
+export function readLink(hash) {
   const [version, ...fields] = hash.replace(/^#/, '').split(';');
   if (version !== VERSION) return {};
   return Object.fromEntries(fields.map((field) => field.split('=')).filter((pair) => pair.length === 2)

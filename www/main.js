@@ -133,12 +133,13 @@ async function start() {
   overlay(app, element('stage'));
   followState(app, timeline);
   studio.keepClear();
-  window.addEventListener('hashchange', openAddress);
+  // By the time this is heard, the address may have been brought up to date with what is still open.
+  window.addEventListener('hashchange', ({ newURL }) => openAddress(new URL(newURL).hash));
 }
 
-/** Opens what the address asks for and starts on the first creature otherwise. Does not wait for the parts. */
-function openAddress() {
-  const fields = readLink();
+/** Opens what an address asks for and starts on the first creature otherwise. Does not wait for the parts. */
+function openAddress(hash = location.hash) {
+  const fields = readLink(hash);
   const tour = tourOf(fields);
   const unknown = unknownOf(fields, app.about);
   const opened = tour && !fields.zoo ? beginTour(fields, tour) : enter(fields, () => {
