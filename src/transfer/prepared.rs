@@ -101,8 +101,7 @@ impl Prepared {
             poses = poses.into_iter().zip(&growths).map(|(pose, &growth)| shrunk(pose, growth)).collect();
         }
         steps.end("surfaces", 0.1)?;
-        let [from, to] = [source, target].map(|sequence| (sequence.faces(), sequence.reference()));
-        let made = || Proposer::new(from.0, from.1, to.0, to.1).ok().map(Arc::new);
+        let made = || Proposer::of(source, target).ok().map(Arc::new);
         let proposer = if parameters.method.by_bones() { proposer.or_else(made) } else { None };
         steps.end("common places", 0.3)?;
         let bending = Bending::new(&here, &there, proposer)?;

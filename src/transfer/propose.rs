@@ -24,6 +24,7 @@ mod tips;
 mod ways;
 
 use super::Pair;
+use crate::sequence::Sequence;
 use consensus::{Consensus, LAST};
 use crowd::{COMPANY, Crowd, Figures};
 use glam::DVec3;
@@ -40,6 +41,9 @@ const ALIKE: f64 = 0.04;
 
 /// What more a place may cost that the surfaces themselves suggest: another leg costs more.
 const DEARER: f64 = 0.012;
+
+/// So many pairs tell more of each other than proposals could.
+pub const ENOUGH: usize = 50;
 
 /// A proposed target point.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
@@ -122,9 +126,17 @@ impl Proposer {
         Ok(self.read(&self.figures().agree(&crowd, at, &REACHES_WITH_TIPS), points, known))
     }
 
+    /// The same for what acts in a source, and a target, in their reference poses.
+    pub fn of(source: &Sequence, target: &Sequence) -> Result<Self, ProposeError> {
+        Self::new(&source.acting_faces(), source.reference(), target.faces(), target.reference())
+    }
+
     /// Pairs all over both figures that seem to belong together if the given ones do. None of them is exact: they tell how
-    /// one figure lies on the other.
+    /// one figure lies on the other. None at all where that is known from [`ENOUGH`] given ones.
     pub fn guides(&self, pairs: &[Pair]) -> Result<Vec<Pair>, ProposeError> {
+        if pairs.len() >= ENOUGH {
+            return Ok(Vec::new());
+        }
         let points: Vec<u32> = pairs.iter().map(|pair| pair.source).collect();
         let known: Vec<Option<u32>> = pairs.iter().map(|pair| Some(pair.target)).collect();
         self.check(&points, &known)?;

@@ -41,7 +41,7 @@ impl Propose {
             points.iter().map(|&p| pairs.iter().find(|pair| pair.source == p).map(|pair| pair.target)).collect();
         let (from, to) = (&source.sequence, &target.sequence);
         let start = clock::seconds();
-        let proposer = Proposer::new(&from.acting_faces(), from.reference(), to.faces(), to.reference())?;
+        let proposer = Proposer::of(from, to)?;
         let prepared = clock::seconds();
         let proposals = proposer.propose(&points, &known)?;
         let done = clock::seconds();

@@ -2,7 +2,8 @@
 //!
 //! Sumner & Popović 2004, Eq. 11–14: neighbouring triangles should be mapped alike (smoothness), no triangle should change
 //! much (identity), marked points lie where they belong, and the others, ever more strongly, on the nearest point of the
-//! target that faces as they do. The unknowns are the vertices and, for each triangle, the image of its normal (see
+//! target that faces as they do. Beyond the paper, hints of where else places belong count before the nearest points do: by
+//! few markers alone a limb may come to lie nearest to another. The unknowns are the vertices and, for each triangle, the image of its normal (see
 //! [`super::super::gradients::operator`]); x, y and z share a matrix, of which only the diagonal changes from round to round.
 
 use crate::linalg::cholesky::{Cholesky, NotPositiveDefinite};
@@ -38,6 +39,9 @@ impl Default for Fitting {
         }
     }
 }
+
+/// What the squared distance of a hint counts, in radii of the target, in the rounds where the nearest points do not.
+const HINTED: f64 = 10.0;
 
 /// A marked point: a place of the source and where it belongs.
 pub type Marker = (u32, DVec3);
@@ -88,6 +92,7 @@ impl<'a> Fit<'a> {
         target: &Surface,
         tree: &Bvh,
         fitting: &Fitting,
+        hints: &[Marker],
         mut shape: impl FnMut(&[DVec3], f64) -> bool,
     ) -> Result<Vec<DVec3>, NotPositiveDefinite> {
         let normals = face_normals(target);
@@ -96,13 +101,17 @@ impl<'a> Fit<'a> {
         for (round, &weight) in fitting.closeness.iter().enumerate() {
             let mut diagonal = vec![0.0; self.equations.side().len()];
             let mut side = self.equations.side().to_vec();
-            if weight > 0.0 {
-                for (v, goal) in self.goals(&at, tree, &normals).into_iter().enumerate() {
-                    if let (Some(goal), Some(u)) = (goal, self.unknown[v]) {
-                        diagonal[u] += weight;
-                        side[u] += weight * goal;
-                    }
+            let mut pull = |v: usize, goal: DVec3, weight: f64| {
+                if let Some(u) = self.unknown[v] {
+                    diagonal[u] += weight;
+                    side[u] += weight * goal;
                 }
+            };
+            if weight > 0.0 {
+                let goals = self.goals(&at, tree, &normals).into_iter().enumerate();
+                goals.for_each(|(v, goal)| goal.into_iter().for_each(|goal| pull(v, goal, weight)));
+            } else {
+                hints.iter().for_each(|&(v, goal)| pull(v as usize, goal, HINTED));
             }
             let ready = self.equations.factor(&diagonal, factor.take())?;
             let mut columns = columns(&[side]);

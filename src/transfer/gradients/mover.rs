@@ -10,12 +10,15 @@ use crate::sequence::Sequence;
 use crate::stopwatch::Stopwatch;
 use crate::transfer::alignment::{Alignment, align};
 use crate::transfer::checked::checked;
+use crate::transfer::correspondence::fit::Marker;
 use crate::transfer::correspondence::{Correspondence, Fit, Quality};
 use crate::transfer::posed::{Posture, posture};
+use crate::transfer::propose::Proposer;
 use crate::transfer::surface::Surface;
 use crate::transfer::{Method, Pair, Parameters, TransferError};
 use crate::warning::Warning;
 use glam::DVec3;
+use std::sync::Arc;
 
 /// Below this coverage a person is told that the fit is poor.
 const POOR: f64 = 0.9;
@@ -28,6 +31,8 @@ pub struct Mover {
     source: Surface,
     target: Surface,
     poses: Vec<Vec<DVec3>>,
+    /// Who gives hints, if anybody does.
+    proposer: Option<Arc<Proposer>>,
     /// #F part numbers of the source's faces; empty where parts are not needed.
     parts: Vec<u32>,
     seconds: Vec<(&'static str, f64)>,
@@ -68,6 +73,17 @@ impl Mover {
         parameters: &Parameters,
         observer: &mut dyn Observer,
     ) -> Result<Self, TransferError> {
+        Self::with_proposer(source, target, parameters, None, observer)
+    }
+
+    /// As [`Mover::new`], where there is already a proposer for these two meshes.
+    pub fn with_proposer(
+        source: &Sequence,
+        target: &Sequence,
+        parameters: &Parameters,
+        proposer: Option<Arc<Proposer>>,
+        observer: &mut dyn Observer,
+    ) -> Result<Self, TransferError> {
         let mut steps = Stopwatch::new(observer);
         let acting = source.acting();
         let source = acting.as_ref();
@@ -81,14 +97,24 @@ impl Mover {
             return Err(TransferError::Degenerate { side: "source" });
         }
         let poses: Vec<Vec<DVec3>> = source.poses().iter().map(|pose| here.unit(&pose.positions)).collect();
-        steps.end("surfaces", 0.5)?;
+        steps.end("surfaces", 0.2)?;
+        let proposer = proposer.or_else(|| Proposer::of(source, &still).ok().map(Arc::new));
+        steps.end("common places", 0.5)?;
         let parts = if parameters.method == Method::Posed {
             parts_of(source, &here, &mut |stage: &'static str, done: f64| steps.at(stage, 0.5 + 0.5 * done))?
         } else {
             Vec::new()
         };
         steps.end("parts", 1.0)?;
-        Ok(Self { parameters: parameters.clone(), source: here, target: there, poses, parts, seconds: steps.stop() })
+        Ok(Self {
+            parameters: parameters.clone(),
+            source: here,
+            target: there,
+            poses,
+            proposer,
+            parts,
+            seconds: steps.stop(),
+        })
     }
 
     /// Seconds of the steps of the preparation.
@@ -101,8 +127,10 @@ impl Mover {
         let mut steps = Stopwatch::new(observer);
         let mut warnings = Vec::new();
         let pairs = checked(&self.source, &self.target, pairs, &mut warnings)?;
-        let places = |pair: &Pair| [self.source.place[pair.source as usize], self.target.place[pair.target as usize]];
-        let markers: Vec<[u32; 2]> = pairs.iter().map(places).collect();
+        let markers = self.places(&pairs);
+        // Pairs that are out of range were refused before.
+        let guides = self.proposer.as_ref().and_then(|proposer| proposer.guides(&pairs).ok()).unwrap_or_default();
+        let both = [&markers, &*self.places(&guides)];
         let place = |&vertex: &u32| self.target.place.get(vertex as usize).copied();
         let mut pins: Vec<u32> = self.parameters.pinned.iter().filter_map(place).collect();
         if pins.len() < self.parameters.pinned.len() {
@@ -119,13 +147,13 @@ impl Mover {
         let rounds = if posed { TURNS } else { 0 };
         let share = |round: usize, done: f64| 0.8 * (round as f64 + done) / (rounds + 1) as f64;
         let mut posture = Posture::unturned(&self.target);
-        let (mut correspondence, mut shapes) = self
-            .correspond(alignment, &markers, &posture.positions, |done| steps.at("correspondence", share(0, done)))?;
+        let (mut correspondence, mut shapes) =
+            self.correspond(alignment, both, &posture.positions, |done| steps.at("correspondence", share(0, done)))?;
         steps.end("correspondence", share(0, 1.0))?;
         for round in 1..=rounds {
             posture = self.posture(&correspondence, alignment)?;
             steps.end("posture", share(round, 0.0))?;
-            (correspondence, shapes) = self.correspond(alignment, &markers, &posture.positions, |done| {
+            (correspondence, shapes) = self.correspond(alignment, both, &posture.positions, |done| {
                 steps.at("correspondence", share(round, done))
             })?;
             steps.end("correspondence", share(round, 1.0))?;
@@ -166,25 +194,33 @@ impl Mover {
         })
     }
 
-    /// Bends the source into the target at `positions` (#N) and pairs their faces; all shapes on the way.
+    /// The places of pairs of vertices on the source and on the target.
+    fn places(&self, pairs: &[Pair]) -> Vec<[u32; 2]> {
+        let places = |pair: &Pair| [self.source.place[pair.source as usize], self.target.place[pair.target as usize]];
+        pairs.iter().map(places).collect()
+    }
+
+    /// Bends the source into the target at `positions` (#N) by places that belong together and others that may, and pairs
+    /// their faces; all shapes on the way.
     fn correspond(
         &self,
         alignment: Alignment,
-        markers: &[[u32; 2]],
+        both: [&[[u32; 2]]; 2],
         positions: &[DVec3],
         mut progress: impl FnMut(f64) -> bool,
     ) -> Result<(Correspondence, Vec<Vec<DVec3>>), TransferError> {
         let target = self.target.bent(positions.to_vec());
         let rest: Vec<DVec3> = self.source.positions.iter().map(|&p| alignment.apply(p)).collect();
-        let markers: Vec<(u32, DVec3)> =
-            markers.iter().map(|&[here, there]| (here, target.positions[there as usize])).collect();
+        let [markers, hints] = both.map(|places| -> Vec<Marker> {
+            places.iter().map(|&[here, there]| (here, target.positions[there as usize])).collect()
+        });
         let fitting = &self.parameters.fitting;
         let fit = Fit::new(&self.source, rest.clone(), &markers, fitting).map_err(degenerate_source)?;
         let tree = Bvh::new(&target.faces, &target.positions);
         let mut shapes = vec![rest];
         let mut going = true;
         let bent = fit
-            .bend(&target, &tree, fitting, |shape, done| {
+            .bend(&target, &tree, fitting, &hints, |shape, done| {
                 shapes.push(shape.to_vec());
                 going = progress(0.9 * done);
                 going

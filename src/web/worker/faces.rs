@@ -4,7 +4,7 @@ use super::values::{Reply, coordinates, parsed, plain, put, sentence};
 use super::{Engine, watcher};
 use crate::memory::Step;
 use crate::transfer::gradients::Mover;
-use crate::transfer::{Pair, Parameters, transfer};
+use crate::transfer::{Pair, Parameters, Prepared};
 use glam::DVec3;
 use js_sys::{Float32Array, Function, Object};
 use wasm_bindgen::prelude::*;
@@ -21,7 +21,9 @@ impl Engine {
             Some((made_with, mover)) if made_with == parameters => mover,
             _ => {
                 self.room_for(Step::Faces(self.open_target()?.sizes()), self.open_sequence()?)?;
-                Mover::new(self.open_sequence()?, self.open_target()?, &parameters, &mut observer).map_err(sentence)?
+                let proposer = Some(self.proposer()?);
+                let (source, target) = (self.open_sequence()?, self.open_target()?);
+                Mover::with_proposer(source, target, &parameters, proposer, &mut observer).map_err(sentence)?
             }
         };
         let result = mover.transfer(&read_pairs(pairs), &mut observer);
@@ -42,17 +44,20 @@ impl Engine {
     }
 
     /// Where the target's vertices are by any method: `{positions}`, T·#V·3 numbers. What was moved before stays.
-    pub fn positions_by(&self, pairs: &[u32], parameters: JsValue, progress: &Function) -> Reply {
+    pub fn positions_by(&mut self, pairs: &[u32], parameters: JsValue, progress: &Function) -> Reply {
         let parameters: Parameters = parsed(parameters)?;
+        let proposer = if parameters.method.by_bones() { Some(self.proposer()?) } else { None };
         let (source, target) = (self.open_sequence()?, self.open_target()?);
         let (pairs, mut observer) = (read_pairs(pairs), watcher(progress));
         let poses = if parameters.method.moves_vertices() {
             self.room_for(Step::Faces(target.sizes()), source)?;
-            let mover = Mover::new(source, target, &parameters, &mut observer).map_err(sentence)?;
-            mover.transfer(&pairs, &mut observer).map_err(sentence)?.poses
+            let mover = Mover::with_proposer(source, target, &parameters, proposer, &mut observer);
+            mover.and_then(|mover| mover.transfer(&pairs, &mut observer)).map_err(sentence)?.poses
         } else {
             self.room_for(Step::Transfer(target.sizes()), source)?;
-            transfer(source, target, &pairs, &parameters, &mut observer).map_err(sentence)?.poses(target.reference())
+            let prepared = Prepared::with_proposer(source, target, &parameters, proposer, &mut observer);
+            let moved = prepared.and_then(|mut prepared| prepared.transfer(&pairs, &mut observer));
+            moved.map_err(sentence)?.poses(target.reference())
         };
         let reply: JsValue = Object::new().into();
         put(&reply, "positions", &table(&poses))?;

@@ -98,8 +98,7 @@ impl Engine {
             return Ok(proposer.clone());
         }
         let (source, target) = (self.open_sequence()?, self.open_target()?);
-        let made = Proposer::new(&source.acting_faces(), source.reference(), target.faces(), target.reference());
-        let proposer = Arc::new(made.map_err(sentence)?);
+        let proposer = Arc::new(Proposer::of(source, target).map_err(sentence)?);
         self.proposer = Some(proposer.clone());
         Ok(proposer)
     }
