@@ -21,6 +21,9 @@ const LOOSE: f64 = 0.1;
 
 /// A [`misfit`] below which no other is sought.
 const WELL: f64 = 0.01;
+/// Above that, guides are believed if they take the misfit below this share of that of the pairs alone: between figures
+/// that have little in common they mislead.
+const BETTER: f64 = 0.8;
 
 /// What is needed to bend one target onto one source, and the last result.
 pub struct Bending {
@@ -99,7 +102,7 @@ impl Bending {
             return guided;
         }
         let alone = alone();
-        if misfit(&alone) < found { alone } else { guided }
+        if found < BETTER * misfit(&alone) { guided } else { alone }
     }
 
     /// Bends the target from a start. The shape that it keeps as far as it can lies between its own and the one that it was
