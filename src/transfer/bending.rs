@@ -6,7 +6,7 @@
 //! but tells which way a limb goes; the surfaces say the rest.
 
 use super::alignment::Alignment;
-use super::propose::Proposer;
+use super::propose::{Proposer, guides};
 use super::registration::{Effort, Foot, Ground, LOST, Pin, Registration, feet};
 use super::spline::Spline;
 use super::surface::Surface;
@@ -60,11 +60,18 @@ impl Bending {
     ) -> Vec<DVec3> {
         let (source, target) = surfaces;
         let rest: Vec<DVec3> = target.positions.iter().map(|&p| alignment.invert(p)).collect();
-        let pins = pins(source, target, pairs);
+        let pins = pinned(source, target, pairs);
         let bent = match self.last.take().filter(|_| quick) {
             Some(Bent { thought, at }) => {
-                let start = displaced(&rest, &at, &pins);
-                let at = self.bent_from(surfaces, &rest, &thought, start, &pins, Effort::Last);
+                let (placed, start) = (displaced(&rest, &thought, &pins), displaced(&rest, &at, &pins));
+                let at = self.registration.bend(
+                    (source, &self.ground),
+                    target,
+                    &shape(&rest, &placed),
+                    start,
+                    &pins,
+                    Effort::Last,
+                );
                 Bent { thought, at }
             }
             None => self.afresh(surfaces, rest, pairs, &pins),
@@ -83,17 +90,23 @@ impl Bending {
     fn afresh(&self, surfaces: (&Surface, &Surface), rest: Vec<DVec3>, pairs: &[Pair], pins: &[Pin]) -> Bent {
         let (source, target) = surfaces;
         let from = |thought: Vec<DVec3>| {
-            let start = displaced(&rest, &thought, pins);
-            let at = self.bent_from(surfaces, &rest, &thought, start, pins, Effort::Whole);
+            let placed = displaced(&rest, &thought, pins);
+            let at = self.registration.bend(
+                (source, &self.ground),
+                target,
+                &shape(&rest, &placed),
+                placed,
+                pins,
+                Effort::Whole,
+            );
             Bent { thought, at }
         };
         let alone = || from(rest.clone());
-        // Pairs that are out of range were refused before.
-        let guides = self.proposer.as_ref().and_then(|proposer| proposer.guides(pairs).ok()).unwrap_or_default();
+        let guides = guides(self.proposer.as_deref(), pairs);
         if guides.is_empty() {
             return alone();
         }
-        let mut all = self::pins(source, target, &guides);
+        let mut all = pinned(source, target, &guides);
         all.extend_from_slice(pins);
         let guided = from(smoothed(&rest, &all));
         let misfit = |bent: &Bent| misfit(source, &self.ground, target, &bent.at);
@@ -104,26 +117,16 @@ impl Bending {
         let alone = alone();
         if found < BETTER * misfit(&alone) { guided } else { alone }
     }
+}
 
-    /// Bends the target from a start. The shape that it keeps as far as it can lies between its own and the one that it was
-    /// thought to have, with its points where they belong: proportions differ, and so do poses.
-    fn bent_from(
-        &self,
-        (source, target): (&Surface, &Surface),
-        rest: &[DVec3],
-        thought: &[DVec3],
-        start: Vec<DVec3>,
-        pins: &[Pin],
-        effort: Effort,
-    ) -> Vec<DVec3> {
-        let placed = displaced(rest, thought, pins);
-        let shape: Vec<DVec3> = rest.iter().zip(&placed).map(|(r, p)| r.lerp(*p, BELIEF)).collect();
-        self.registration.bend((source, &self.ground), target, &shape, start, pins, effort)
-    }
+/// The shape to keep lies between the target's own and the one that it is thought to have, with its points where they belong:
+/// proportions differ, and so do poses.
+fn shape(rest: &[DVec3], placed: &[DVec3]) -> Vec<DVec3> {
+    rest.iter().zip(placed).map(|(r, p)| r.lerp(*p, BELIEF)).collect()
 }
 
 /// Vertices of the target and where they belong on the source.
-fn pins(source: &Surface, target: &Surface, pairs: &[Pair]) -> Vec<Pin> {
+fn pinned(source: &Surface, target: &Surface, pairs: &[Pair]) -> Vec<Pin> {
     let pin = |pair: &Pair| {
         let [from, to] = [target.place[pair.target as usize], source.place[pair.source as usize]];
         Pin { vertex: from, point: source.positions[to as usize] }

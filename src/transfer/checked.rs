@@ -1,9 +1,19 @@
-//! Pairs as people give them.
+//! Meshes and pairs as people give them.
 
 use super::surface::Surface;
 use super::{Pair, TransferError};
+use crate::sequence::Sequence;
 use crate::warning::Warning;
 use std::collections::BTreeMap;
+
+/// The surfaces of a source and of a target, both with faces.
+pub fn surfaces(source: &Sequence, target: &Sequence) -> Result<[Surface; 2], TransferError> {
+    let surface = |sequence: &Sequence, side: &'static str| {
+        let surface = Surface::new(sequence);
+        if surface.faces.is_empty() { Err(TransferError::NoFaces { side }) } else { Ok(surface) }
+    };
+    Ok([surface(source, "source")?, surface(target, "target")?])
+}
 
 /// The pairs without repetitions, their vertices within range; what was left out or is scarce goes to the warnings.
 pub fn checked(

@@ -3,7 +3,7 @@
 use super::alignment::{Alignment, align};
 use super::bending::Bending;
 use super::biharmonic::{self, carried};
-use super::checked::checked;
+use super::checked::{checked, surfaces};
 use super::growth::{grown, growth, shrunk};
 use super::joints::Joints;
 use super::layers::{self, Pieces};
@@ -88,12 +88,7 @@ impl Prepared {
         let mut steps = Stopwatch::new(observer);
         let acting = source.acting();
         let source = acting.as_ref();
-        let surfaces = [(source, "source"), (target, "target")].map(|(sequence, side)| {
-            let surface = Surface::new(sequence);
-            if surface.faces.is_empty() { Err(TransferError::NoFaces { side }) } else { Ok(surface) }
-        });
-        let [here, there] = surfaces;
-        let (here, there) = (here?, there?);
+        let [here, there] = surfaces(source, target)?;
         let mut poses: Vec<Vec<DVec3>> = source.poses().iter().map(|pose| here.unit(&pose.positions)).collect();
         let mut growths = vec![1.0; poses.len()];
         if parameters.method.by_bones() {

@@ -91,6 +91,11 @@ pub enum ProposeError {
     },
 }
 
+/// [`Proposer::guides`] for pairs that are known to exist; none without a proposer.
+pub fn guides(proposer: Option<&Proposer>, pairs: &[Pair]) -> Vec<Pair> {
+    proposer.and_then(|proposer| proposer.guides(pairs).ok()).unwrap_or_default()
+}
+
 /// Two meshes, prepared for proposals.
 pub struct Proposer {
     source: Surface,
@@ -119,16 +124,16 @@ impl Proposer {
         Ok(proposer)
     }
 
+    /// As [`Proposer::new`], for what acts in a source, and a target, in their reference poses.
+    pub fn of(source: &Sequence, target: &Sequence) -> Result<Self, ProposeError> {
+        Self::new(&source.acting_faces(), source.reference(), target.faces(), target.reference())
+    }
+
     /// Proposes a target vertex for every point (source vertices) whose place is not `known`.
     pub fn propose(&self, points: &[u32], known: &[Option<u32>]) -> Result<Proposals, ProposeError> {
         self.check(points, known)?;
         let (crowd, at) = self.gather(points, known);
         Ok(self.read(&self.figures().agree(&crowd, at, &REACHES_WITH_TIPS), points, known))
-    }
-
-    /// The same for what acts in a source, and a target, in their reference poses.
-    pub fn of(source: &Sequence, target: &Sequence) -> Result<Self, ProposeError> {
-        Self::new(&source.acting_faces(), source.reference(), target.faces(), target.reference())
     }
 
     /// Pairs all over both figures that seem to belong together if the given ones do. None of them is exact: they tell how
@@ -142,7 +147,7 @@ impl Proposer {
         self.check(&points, &known)?;
         let (crowd, at) = self.gather(&points, &known);
         let consensus = self.figures().agree(&crowd, at, &REACHES_WITH_TIPS);
-        let company = consensus.trusted(usize::MAX).filter(|&i| i < crowd.company);
+        let company = consensus.trusted().filter(|&i| i < crowd.company);
         let pair = |i: usize| {
             let target = self.target.samples[consensus.at[i]? as usize];
             Some(Pair { source: self.source.samples[i], target })

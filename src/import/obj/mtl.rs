@@ -101,7 +101,6 @@ pub fn read(bytes: &[u8]) -> Vec<Material> {
 }
 
 /// Takes over a colour, or a grey, where there is one.
-#[inline(never)]
 fn set_colour(colour: &mut [f64; 3], line: &[u8]) {
     let found: Vec<f64> = words(line).map_while(number).collect();
     match found[..] {
@@ -112,7 +111,6 @@ fn set_colour(colour: &mut [f64; 3], line: &[u8]) {
 }
 
 /// The name of a picture's file.
-#[inline(never)]
 fn picture(line: &[u8]) -> Option<String> {
     Some(text(without_options(line))).filter(|name| !name.is_empty())
 }
@@ -123,13 +121,11 @@ fn number(word: &[u8]) -> Option<f64> {
 }
 
 /// A finite number.
-#[inline(never)]
 pub fn float(word: &[u8]) -> Option<f64> {
     std::str::from_utf8(word).ok()?.parse().ok().filter(|value: &f64| value.is_finite())
 }
 
 /// The first word of a line, and what follows.
-#[inline(never)]
 pub fn cut(line: &[u8]) -> (&[u8], &[u8]) {
     let line = line.trim_ascii();
     let (word, rest) = line.split_at(line.iter().position(u8::is_ascii_whitespace).unwrap_or(line.len()));
@@ -137,7 +133,6 @@ pub fn cut(line: &[u8]) -> (&[u8], &[u8]) {
 }
 
 /// A name in a line; it may have spaces in it.
-#[inline(never)]
 pub fn text(bytes: &[u8]) -> String {
     String::from_utf8_lossy(bytes).chars().filter(|c| !c.is_control()).collect()
 }

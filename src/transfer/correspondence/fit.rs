@@ -2,9 +2,11 @@
 //!
 //! Sumner & Popović 2004, Eq. 11–14: neighbouring triangles should be mapped alike (smoothness), no triangle should change
 //! much (identity), marked points lie where they belong, and the others, ever more strongly, on the nearest point of the
-//! target that faces as they do. Beyond the paper, hints of where else places belong count before the nearest points do: by
-//! few markers alone a limb may come to lie nearest to another. The unknowns are the vertices and, for each triangle, the image of its normal (see
+//! target that faces as they do. The unknowns are the vertices and, for each triangle, the image of its normal (see
 //! [`super::super::gradients::operator`]); x, y and z share a matrix, of which only the diagonal changes from round to round.
+//!
+//! Beyond the paper, hints of where other places belong count until the nearest points do: by few markers alone a limb may
+//! come to lie nearest to another.
 
 use crate::linalg::cholesky::{Cholesky, NotPositiveDefinite};
 use crate::mesh::DualGraph;

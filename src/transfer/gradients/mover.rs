@@ -9,11 +9,11 @@ use crate::segmentation;
 use crate::sequence::Sequence;
 use crate::stopwatch::Stopwatch;
 use crate::transfer::alignment::{Alignment, align};
-use crate::transfer::checked::checked;
+use crate::transfer::checked::{checked, surfaces};
 use crate::transfer::correspondence::fit::Marker;
 use crate::transfer::correspondence::{Correspondence, Fit, Quality};
 use crate::transfer::posed::{Posture, posture};
-use crate::transfer::propose::Proposer;
+use crate::transfer::propose::{Proposer, guides};
 use crate::transfer::surface::Surface;
 use crate::transfer::{Method, Pair, Parameters, TransferError};
 use crate::warning::Warning;
@@ -88,11 +88,7 @@ impl Mover {
         let acting = source.acting();
         let source = acting.as_ref();
         let still = target.reference_alone();
-        let [here, there] = [(source, "source"), (&still, "target")].map(|(sequence, side)| {
-            let surface = Surface::new(sequence);
-            if surface.faces.is_empty() { Err(TransferError::NoFaces { side }) } else { Ok(surface) }
-        });
-        let (here, there) = (here?, there?);
+        let [here, there] = surfaces(source, &still)?;
         if gradients(&here).iter().all(Option::is_none) {
             return Err(TransferError::Degenerate { side: "source" });
         }
@@ -128,9 +124,8 @@ impl Mover {
         let mut warnings = Vec::new();
         let pairs = checked(&self.source, &self.target, pairs, &mut warnings)?;
         let markers = self.places(&pairs);
-        // Pairs that are out of range were refused before.
-        let guides = self.proposer.as_ref().and_then(|proposer| proposer.guides(&pairs).ok()).unwrap_or_default();
-        let both = [&markers, &*self.places(&guides)];
+        let hints = self.places(&guides(self.proposer.as_deref(), &pairs));
+        let both = [&*markers, &*hints];
         let place = |&vertex: &u32| self.target.place.get(vertex as usize).copied();
         let mut pins: Vec<u32> = self.parameters.pinned.iter().filter_map(place).collect();
         if pins.len() < self.parameters.pinned.len() {

@@ -169,16 +169,16 @@ impl<'a> Consensus<'a> {
         &self.target.places
     }
 
-    /// Up to `most` points that are trusted and have a place; the given ones first.
-    pub fn trusted(&self, most: usize) -> impl Iterator<Item = usize> + '_ {
+    /// The points that are trusted and have a place; the given ones first.
+    pub fn trusted(&self) -> impl Iterator<Item = usize> + '_ {
         let mut order: Vec<usize> = (0..self.points.len()).collect();
         order.sort_by_key(|&i| self.points[i].given.is_none());
-        order.into_iter().filter(|&i| self.trust[i] > 0.5 && self.at[i].is_some()).take(most)
+        order.into_iter().filter(|&i| self.trust[i] > 0.5 && self.at[i].is_some())
     }
 
-    /// The same as places of the source and of the target.
+    /// Up to `most` of them, as places of the source and of the target.
     pub fn guides(&self, most: usize) -> Vec<(DVec3, DVec3)> {
-        self.trusted(most).filter_map(|i| Some((self.points[i].place, self.place(i)?))).collect()
+        self.trusted().filter_map(|i| Some((self.points[i].place, self.place(i)?))).take(most).collect()
     }
 
     /// The places of the given points, and the target's samples at them.
