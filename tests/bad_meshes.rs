@@ -15,7 +15,7 @@ use sinew::observer::Silent;
 use sinew::segmentation::{self, Method};
 use sinew::sequence::{Pose, Sequence, SequenceError};
 use sinew::transfer::propose::Proposer;
-use sinew::transfer::{self, Pair};
+use sinew::transfer::{self, Pair, Prepared};
 use sinew::weights::{self, Biharmonic};
 use std::panic::{AssertUnwindSafe, catch_unwind};
 
@@ -203,29 +203,32 @@ fn weights() {
 }
 
 #[test]
-fn transfer_and_export() {
-    let partner = healthy();
-    for (what, as_source) in [("an odd source", true), ("an odd target", false)] {
-        on_all(what, |mesh| {
-            let (source, target) = if as_source { (mesh, &partner) } else { (&partner, mesh) };
-            let nothing = without_faces(mesh);
-            for method in [transfer::Method::Bones, transfer::Method::Direct, transfer::Method::Relative] {
-                let parameters = transfer::Parameters { method, ..transfer::Parameters::default() };
-                let pairs: Vec<Pair> = far_apart(source, 5)
-                    .into_iter()
-                    .zip(far_apart(target, 5))
-                    .map(|(source, target)| Pair { source, target })
-                    .collect();
-                for pairs in [&pairs[..], &pairs[..pairs.len().min(1)]] {
-                    let result = transfer::transfer(source, target, pairs, &parameters, &mut Silent);
-                    let flat = flat(mesh);
-                    let Some(moved) = sentence(result, nothing || flat)? else { continue };
-                    carried(source, target, &moved).map_err(|why| format!("{method:?}: {why}"))?;
-                }
-            }
-            Ok(())
-        });
+fn transfer_from_an_odd_source() {
+    let target = healthy();
+    on_all("an odd source", |mesh| transfers(mesh, &target, without_faces(mesh), flat(mesh)));
+}
+
+#[test]
+fn transfer_to_an_odd_target() {
+    let source = healthy();
+    on_all("an odd target", |mesh| transfers(&source, mesh, without_faces(mesh), flat(mesh)));
+}
+
+/// By all methods, with some pairs and with one; and what comes of it as files.
+fn transfers(source: &Sequence, target: &Sequence, nothing: bool, flat: bool) -> Outcome {
+    let pairs = far_apart(source, 5).into_iter().zip(far_apart(target, 5));
+    let pairs: Vec<Pair> = pairs.map(|(source, target)| Pair { source, target }).collect();
+    for method in [transfer::Method::Bones, transfer::Method::Direct, transfer::Method::Relative] {
+        let parameters = transfer::Parameters { method, ..transfer::Parameters::default() };
+        let prepared = Prepared::new(source, target, &parameters, &mut Silent);
+        let Some(mut prepared) = sentence(prepared, nothing || flat)? else { continue };
+        for pairs in [&pairs[..], &pairs[..pairs.len().min(1)]] {
+            let result = prepared.transfer(pairs, &mut Silent);
+            let Some(moved) = sentence(result, nothing || flat)? else { continue };
+            carried(source, target, &moved).map_err(|why| format!("{method:?}: {why}"))?;
+        }
     }
+    Ok(())
 }
 
 /// Whether no face of the mesh has an area.

@@ -40,8 +40,8 @@ fn rotate<const N: usize>(a: &mut [[f64; N]; N], v: &mut [[f64; N]; N], p: usize
         return;
     }
     let theta = (a[q][q] - a[p][p]) / (2.0 * a[p][q]);
-    let t = if theta.is_finite() { theta.signum() / (theta.abs() + theta.hypot(1.0)) } else { 0.0 };
-    let c = 1.0 / t.hypot(1.0);
+    let t = if theta.is_finite() { theta.signum() / (theta.abs() + (theta * theta + 1.0).sqrt()) } else { 0.0 };
+    let c = 1.0 / (t * t + 1.0).sqrt();
     let s = t * c;
     let turned = |x: f64, y: f64| (c * x - s * y, s * x + c * y);
     for row in a.iter_mut().chain(v.iter_mut()) {

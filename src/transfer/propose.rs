@@ -12,8 +12,10 @@
 //! and J. P. Costeira, *A global solution to sparse correspondence problems*, IEEE Transactions on Pattern Analysis and
 //! Machine Intelligence 25(2), 2003, pp. 187–199), here relaxed by rounds of averages.
 
+mod coarse;
 mod consensus;
 mod crowd;
+mod distances;
 mod paths;
 mod refine;
 mod similarity;

@@ -5,10 +5,14 @@
 //! diagram: G. Peyré and L. Cohen, *Geodesic remeshing using front propagation*, International Journal of Computer
 //! Vision 69(1), 2006, pp. 145–156). That asks nothing of the mesh: seams, holes, edges with many faces, many pieces.
 
+use super::coarse;
+use super::distances::Distances;
 use super::paths::{Graph, Paths};
 use crate::mesh::doctor::outward;
 use crate::mesh::weld::weld;
 use glam::DVec3;
+use std::cmp::Reverse;
+use std::collections::BinaryHeap;
 
 /// Samples of a surface; more cost memory and time by their square.
 pub const SAMPLES: usize = 1200;
@@ -37,14 +41,12 @@ pub struct Surface {
     pub places: Vec<DVec3>,
     /// #samples directions of the surface, a mean over the cell.
     pub normals: Vec<DVec3>,
-    /// #samples × #samples distances along the surface, row by row.
-    distances: Vec<f32>,
+    /// Along the surface, between samples.
+    distances: Distances,
     /// #samples mean distances from the first samples: large at tips.
     pub remote: Vec<f32>,
     /// Triangles between samples whose cells meet.
     pub coarse: Vec<[u32; 3]>,
-    /// The coarse graph.
-    pub graph: Graph,
     /// #samples lists of the vertices in each cell.
     pub members: Vec<Vec<u32>>,
     /// Sides of the bounding box.
@@ -63,14 +65,13 @@ impl Surface {
         let stands = weld(&[&points], 1e-7);
         let welded: Vec<[u32; 3]> = sound(&outward(faces, &points), &stands);
         let used = used(&welded, &stands, diagonal);
-        let fine = Graph::new(points.len(), &edges(&welded, &points));
+        let fine = Graph::new(points.len(), &coarse::edges(&welded, &points));
         let (samples, mut paths) = farthest(&fine, &points, &used, samples.max(1));
         reach_all(&mut paths, &stands, &samples, &points);
         let cell = paths.label;
         let places: Vec<DVec3> = samples.iter().map(|&v| points[v as usize]).collect();
-        let coarse = coarse_faces(&welded, &cell);
-        let graph = coarse_graph(&coarse, &places);
-        let distances = all_pairs(&graph);
+        let coarse = coarse::faces(&welded, &cell);
+        let distances = Distances::new(coarse::graph(&coarse, &places));
         let (vertex_normals, normals) = normals(&welded, &points, &stands, &cell, samples.len());
         let readings = readings(&points, &cell, &coarse, &places);
         let proper = |[a, b, c]: &[u32; 3]| a != b && b != c && c != a;
@@ -90,14 +91,11 @@ impl Surface {
             distances,
             remote: Vec::new(),
             coarse,
-            graph,
             members,
             sides,
         };
         surface.resize(TYPICAL / f64::from(surface.typical()).max(1e-6));
-        let among = FIRST.min(surface.len());
-        let mean = |s: u32| surface.row(s)[..among].iter().sum::<f32>() / among as f32;
-        surface.remote = (0..surface.len() as u32).map(mean).collect();
+        surface.remote = surface.remote();
         Some(surface)
     }
 
@@ -108,9 +106,19 @@ impl Surface {
         if among > 1 { sum / (among * (among - 1)) as f32 } else { TYPICAL as f32 }
     }
 
+    /// The mean distances of all samples from the first.
+    fn remote(&self) -> Vec<f32> {
+        let among = FIRST.min(self.len());
+        let mut sums = vec![0.0; self.len()];
+        for first in 0..among as u32 {
+            sums.iter_mut().zip(self.row(first)).for_each(|(sum, d)| *sum += d);
+        }
+        sums.iter().map(|sum| sum / among as f32).collect()
+    }
+
     fn resize(&mut self, by: f64) {
         self.points.iter_mut().chain(&mut self.places).for_each(|p| *p *= by);
-        self.distances.iter_mut().for_each(|d| *d *= by as f32);
+        self.distances.scale(by as f32);
         self.sides *= by;
     }
 
@@ -121,13 +129,12 @@ impl Surface {
 
     /// Distances of all samples from one of them.
     pub fn row(&self, sample: u32) -> &[f32] {
-        let n = self.len();
-        &self.distances[sample as usize * n..(sample as usize + 1) * n]
+        self.distances.row(sample)
     }
 
     /// The vertices in the cell of a sample and in those beside it.
     pub fn around(&self, sample: u32) -> impl Iterator<Item = u32> + '_ {
-        let cells = std::iter::once(sample).chain(self.graph.links(sample).iter().map(|l| l.0));
+        let cells = std::iter::once(sample).chain(self.distances.graph().links(sample).iter().map(|l| l.0));
         cells.flat_map(|cell| self.members[cell as usize].iter().copied())
     }
 
@@ -184,20 +191,16 @@ fn used(faces: &[[u32; 3]], stands: &[u32], diagonal: f64) -> Vec<u32> {
     (0..stands.len() as u32).filter(|&v| used[v as usize] && stands[v as usize] == v).collect()
 }
 
-fn edges(faces: &[[u32; 3]], points: &[DVec3]) -> Vec<(u32, u32, f64)> {
-    let length = |a: u32, b: u32| points[a as usize].distance(points[b as usize]).max(1e-12);
-    faces.iter().flat_map(|&[a, b, c]| [(a, b), (b, c), (c, a)]).map(|(a, b)| (a, b, length(a, b))).collect()
-}
-
 /// Farthest point sampling among `used`, from the vertex farthest from the middle; with the cells.
 fn farthest(graph: &Graph, points: &[DVec3], used: &[u32], count: usize) -> (Vec<u32>, Paths) {
-    let mut paths = Paths::new(points.len());
+    let mut paths = Paths::new(graph);
     let mut samples = Vec::new();
     let middle = used.iter().map(|&v| points[v as usize]).sum::<DVec3>() / used.len().max(1) as f64;
     let first = used.iter().copied().max_by(|&a, &b| {
         let d = |v: u32| points[v as usize].distance_squared(middle);
         d(a).total_cmp(&d(b)).then(b.cmp(&a))
     });
+    let mut waiting = used.iter().map(|&v| (f64::INFINITY.to_bits(), Reverse(v))).collect();
     let mut next = first;
     while let Some(sample) = next {
         paths.add(graph, sample, samples.len() as u32);
@@ -205,10 +208,23 @@ fn farthest(graph: &Graph, points: &[DVec3], used: &[u32], count: usize) -> (Vec
         if samples.len() >= count {
             break;
         }
-        let far = |v: &u32| paths.distance[*v as usize];
-        next = used.iter().copied().max_by(|a, b| far(a).total_cmp(&far(b)).then(b.cmp(a))).filter(|v| far(v) > 0.0);
+        next = farthest_now(&mut waiting, &paths.distance);
     }
     (samples, paths)
+}
+
+/// The vertex that is farthest, the first of equals; `None` if all distances are zero. `waiting` has the distances (their
+/// bits are ordered as they are) from before some became shorter, and is brought up to date as far as it matters.
+fn farthest_now(waiting: &mut BinaryHeap<(u64, Reverse<u32>)>, distance: &[f64]) -> Option<u32> {
+    loop {
+        let mut top = waiting.peek_mut()?;
+        let Reverse(v) = top.1;
+        let now = distance[v as usize].to_bits();
+        if top.0 == now {
+            return (now > 0).then_some(v);
+        }
+        top.0 = now;
+    }
 }
 
 /// Vertices without a sample in reach join the nearest as the crow flies; welded vertices the one that stands for them.
@@ -225,151 +241,6 @@ fn reach_all(paths: &mut Paths, stands: &[u32], samples: &[u32], points: &[DVec3
 fn nearest(samples: &[u32], points: &[DVec3], to: DVec3) -> u32 {
     let d = |i: &u32| points[samples[*i as usize] as usize].distance_squared(to);
     (0..samples.len() as u32).min_by(|a, b| d(a).total_cmp(&d(b))).unwrap_or(0)
-}
-
-/// Triangles between three cells that meet at a face, each once.
-fn coarse_faces(faces: &[[u32; 3]], cell: &[u32]) -> Vec<[u32; 3]> {
-    let cells = faces.iter().map(|f| f.map(|v| cell[v as usize]));
-    let mut coarse: Vec<[u32; 3]> = cells.filter(|[a, b, c]| a != b || b != c).map(rotated).collect();
-    coarse.sort_unstable();
-    coarse.dedup();
-    coarse
-}
-
-/// The same triangle with its smallest number first.
-fn rotated([a, b, c]: [u32; 3]) -> [u32; 3] {
-    if a <= b && a <= c {
-        [a, b, c]
-    } else if b <= a && b <= c {
-        [b, c, a]
-    } else {
-        [c, a, b]
-    }
-}
-
-/// Links along the coarse edges, straight across pairs of triangles, and between pieces.
-fn coarse_graph(coarse: &[[u32; 3]], places: &[DVec3]) -> Graph {
-    let mut links = edges(coarse, places);
-    links.extend(across(coarse, places));
-    let graph = Graph::new(places.len(), &links);
-    let piece = pieces(&graph);
-    let bridges = bridges(&piece, places);
-    if bridges.is_empty() {
-        return graph;
-    }
-    let spacing = links.iter().map(|link| link.2).sum::<f64>() / links.len().max(1) as f64;
-    for &(a, b, gap) in &bridges {
-        links.extend(contacts(&piece, [piece[a as usize], piece[b as usize]], gap + spacing, places));
-    }
-    links.extend(bridges);
-    Graph::new(places.len(), &links)
-}
-
-/// Links between the two corners opposite a coarse edge, over the two triangles laid flat: paths along edges alone are
-/// too long by a tenth and depend on how the edges happen to run.
-fn across(coarse: &[[u32; 3]], places: &[DVec3]) -> Vec<(u32, u32, f64)> {
-    let mut sides: Vec<(u32, u32, u32)> = coarse
-        .iter()
-        .filter(|[a, b, c]| a != b && b != c && c != a)
-        .flat_map(|&[a, b, c]| [(a.min(b), a.max(b), c), (b.min(c), b.max(c), a), (c.min(a), c.max(a), b)])
-        .collect();
-    sides.sort_unstable();
-    let mut links = Vec::new();
-    for pair in sides.windows(2) {
-        let [(a, b, c), (a2, b2, d)] = [pair[0], pair[1]];
-        if (a, b) != (a2, b2) || c == d {
-            continue;
-        }
-        let [pa, pb, pc, pd] = [a, b, c, d].map(|i| places[i as usize]);
-        let length = pa.distance(pb);
-        let along = (pb - pa) / length.max(1e-12);
-        let flat = |p: DVec3| {
-            let x = (p - pa).dot(along);
-            (x, (p - pa - x * along).length())
-        };
-        let ((x1, y1), (x2, y2)) = (flat(pc), flat(pd));
-        let crossing = x1 + (x2 - x1) * y1 / (y1 + y2).max(1e-300);
-        if crossing >= 0.0 && crossing <= length {
-            links.push((c, d, (x1 - x2).hypot(y1 + y2)));
-        }
-    }
-    links
-}
-
-/// For each node of a graph the number of its connected piece.
-fn pieces(graph: &Graph) -> Vec<u32> {
-    let mut piece = vec![u32::MAX; graph.len()];
-    let mut count = 0;
-    for first in 0..graph.len() as u32 {
-        if piece[first as usize] != u32::MAX {
-            continue;
-        }
-        let mut stack = vec![first];
-        piece[first as usize] = count;
-        while let Some(node) = stack.pop() {
-            for &(next, _) in graph.links(node) {
-                if piece[next as usize] == u32::MAX {
-                    piece[next as usize] = count;
-                    stack.push(next);
-                }
-            }
-        }
-        count += 1;
-    }
-    piece
-}
-
-/// Links between two pieces all along where they lie against each other, within `reach`: a shirt that hung on the trousers
-/// at one place would hang on them at another place of another figure.
-fn contacts(piece: &[u32], [p, q]: [u32; 2], reach: f64, places: &[DVec3]) -> Vec<(u32, u32, f64)> {
-    let of = |wanted: u32| (0..piece.len() as u32).filter(move |&s| piece[s as usize] == wanted);
-    let distance = |a: u32, b: u32| places[a as usize].distance(places[b as usize]);
-    let nearest = |a: u32, other: u32| {
-        let to = of(other).map(|b| (a, b, distance(a, b))).min_by(|x, y| x.2.total_cmp(&y.2));
-        to.filter(|link| link.2 <= reach)
-    };
-    of(p).filter_map(|a| nearest(a, q)).chain(of(q).filter_map(|b| nearest(b, p))).collect()
-}
-
-/// Straight links that join the pieces of a graph into one, each time between the two nearest.
-fn bridges(piece: &[u32], places: &[DVec3]) -> Vec<(u32, u32, f64)> {
-    let n = piece.len();
-    let count = piece.iter().max().map_or(0, |&last| last + 1);
-    // Prim's spanning tree over the samples, where links within a piece are free.
-    let mut best = vec![(f64::INFINITY, 0_u32); n];
-    let mut inside = vec![false; count as usize];
-    let mut links = Vec::new();
-    let mut next = piece.first().copied();
-    while let Some(joined) = next {
-        inside[joined as usize] = true;
-        for a in (0..n).filter(|&a| piece[a] == joined) {
-            for b in (0..n).filter(|&b| !inside[piece[b] as usize]) {
-                let d = places[a].distance(places[b]);
-                if d < best[b].0 {
-                    best[b] = (d, a as u32);
-                }
-            }
-        }
-        let outside = (0..n).filter(|&b| !inside[piece[b] as usize]);
-        let nearest = outside.min_by(|&a, &b| best[a].0.total_cmp(&best[b].0));
-        next = nearest.map(|b| {
-            links.push((best[b].1, b as u32, best[b].0.max(1e-12)));
-            piece[b]
-        });
-    }
-    links
-}
-
-fn all_pairs(graph: &Graph) -> Vec<f32> {
-    let n = graph.len();
-    let mut distances = Vec::with_capacity(n * n);
-    let mut paths = Paths::new(n);
-    for sample in 0..n as u32 {
-        paths.clear();
-        paths.add(graph, sample, 0);
-        distances.extend(paths.distance.iter().map(|&d| if d.is_finite() { d as f32 } else { 2.0 }));
-    }
-    distances
 }
 
 /// Normals of the vertices and of the cells.
