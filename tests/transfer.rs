@@ -94,13 +94,15 @@ fn rotations(creature: &Creature, pose: &[DVec3]) -> BTreeMap<String, DMat3> {
     named.map(|(name, m)| (name, m.0.motion().rotation)).collect()
 }
 
+/// The angle between two rotations, in degrees.
+fn angle(a: &DMat3, b: &DMat3) -> f64 {
+    let r = a.transpose() * *b;
+    (0.5 * (r.x_axis.x + r.y_axis.y + r.z_axis.z - 1.0)).clamp(-1.0, 1.0).acos().to_degrees()
+}
+
 /// How far each bone of the target turns from what the source's does, ascending, and how far these turn on the mean; in
 /// degrees. The target's own gait is another one: what is known is how each of its bones must turn.
 fn bones_off(source: &Creature, target: &Creature, found: &[Vec<DVec3>]) -> (Vec<f64>, f64) {
-    let angle = |a: &DMat3, b: &DMat3| {
-        let r = a.transpose() * *b;
-        (0.5 * (r.x_axis.x + r.y_axis.y + r.z_axis.z - 1.0)).clamp(-1.0, 1.0).acos().to_degrees()
-    };
     let (mut off, mut moved) = (Vec::new(), Vec::new());
     for (pose, found) in source.sequence.poses().iter().zip(found) {
         let truth = rotations(source, &pose.positions);
@@ -142,6 +144,26 @@ fn few_pairs_are_enough_for_other_proportions() {
         let found = mean(&off);
         println!("{a} > {b}, four pairs: bones off by {found:.2}° of {turning:.2}°");
         assert!(found < share * turning, "{a} > {b}: {found} of {turning}");
+    }
+}
+
+/// A tail that the source has not follows what it grows from, though the source's legs are what lies nearest to it.
+#[test]
+fn a_tail_without_a_twin_is_held_by_the_pelvis() {
+    let (source, target) = (creature("person", 8_000), creature("dinosaur", 6_000));
+    let pairs = zoo::landmark_pairs(&source, &target).into_iter();
+    let pairs: Vec<Pair> = pairs.map(|(_, source, target)| Pair { source, target }).collect();
+    for pairs in [&pairs[..], &pairs[3..]] {
+        let result = by_default(&source.sequence, &still(&target.sequence), pairs);
+        let poses = result.poses(target.sequence.reference());
+        let off = poses.iter().flat_map(|pose| {
+            let rotations = rotations(&target, pose);
+            let tail = rotations.iter().filter(|bone| bone.0.starts_with("tail"));
+            tail.map(|bone| angle(bone.1, &rotations["pelvis"])).collect::<Vec<_>>()
+        });
+        let found = mean(&off.collect::<Vec<_>>());
+        println!("person > dinosaur, {} pairs: the tail turns {found:.1}° against the pelvis", pairs.len());
+        assert!(found < 10.0, "{found}");
     }
 }
 

@@ -7,7 +7,7 @@
 
 use super::alignment::Alignment;
 use super::propose::{Proposer, guides};
-use super::registration::{Effort, Foot, Ground, LOST, Pin, Registration, feet};
+use super::registration::{Effort, Foot, Ground, Known, LOST, Pin, Registration, feet};
 use super::spline::Spline;
 use super::surface::Surface;
 use super::{Pair, TransferError};
@@ -40,6 +40,8 @@ struct Bent {
     thought: Vec<DVec3>,
     /// Where they lie.
     at: Vec<DVec3>,
+    /// What was thought of some of them.
+    hints: Vec<Pin>,
 }
 
 impl Bending {
@@ -62,17 +64,17 @@ impl Bending {
         let rest: Vec<DVec3> = target.positions.iter().map(|&p| alignment.invert(p)).collect();
         let pins = pinned(source, target, pairs);
         let bent = match self.last.take().filter(|_| quick) {
-            Some(Bent { thought, at }) => {
+            Some(Bent { thought, at, hints }) => {
                 let (placed, start) = (displaced(&rest, &thought, &pins), displaced(&rest, &at, &pins));
                 let at = self.registration.bend(
                     (source, &self.ground),
                     target,
                     &shape(&rest, &placed),
                     start,
-                    &pins,
+                    Known { pins: &pins, hints: &hints },
                     Effort::Last,
                 );
-                Bent { thought, at }
+                Bent { thought, at, hints }
             }
             None => self.afresh(surfaces, rest, pairs, &pins),
         };
@@ -89,27 +91,26 @@ impl Bending {
     /// What comes of pairs and guides, or of the pairs alone if that is better.
     fn afresh(&self, surfaces: (&Surface, &Surface), rest: Vec<DVec3>, pairs: &[Pair], pins: &[Pin]) -> Bent {
         let (source, target) = surfaces;
-        let from = |thought: Vec<DVec3>| {
+        let from = |thought: Vec<DVec3>, hints: Vec<Pin>| {
             let placed = displaced(&rest, &thought, pins);
             let at = self.registration.bend(
                 (source, &self.ground),
                 target,
                 &shape(&rest, &placed),
                 placed,
-                pins,
+                Known { pins, hints: &hints },
                 Effort::Whole,
             );
-            Bent { thought, at }
+            Bent { thought, at, hints }
         };
-        let alone = || from(rest.clone());
+        let alone = || from(rest.clone(), Vec::new());
         let guides = guides(self.proposer.as_deref(), pairs);
         if guides.is_empty() {
             return alone();
         }
-        let mut all = pinned(source, target, &guides);
-        all.extend_from_slice(pins);
-        let guided = from(smoothed(&rest, &all));
-        let misfit = |bent: &Bent| misfit(source, &self.ground, target, &bent.at);
+        let hints = pinned(source, target, &guides);
+        let guided = from(smoothed(&rest, &[&hints, pins].concat()), hints);
+        let misfit = |bent: &Bent| misfit(source, target, &bent.at);
         let found = misfit(&guided);
         if found < WELL {
             return guided;
@@ -148,14 +149,11 @@ fn smoothed(rest: &[DVec3], pins: &[Pin]) -> Vec<DVec3> {
     rest.iter().map(|&r| r + spline.at(r)).collect()
 }
 
-/// How badly a bent target lies on the source: the mean distances of either from the other, over their areas; what is farther
-/// than [`LOST`] has no twin, however far it is.
-fn misfit(source: &Surface, ground: &Ground, target: &Surface, bent: &[DVec3]) -> f64 {
-    let mean = |of: &Surface, feet: Vec<Option<(Foot, f64)>>| {
-        let far = feet.iter().zip(&of.mass).map(|(foot, mass)| mass * foot.map_or(LOST, |foot| foot.1.min(LOST)));
-        far.sum::<f64>() / of.mass.iter().sum::<f64>().max(f64::MIN_POSITIVE)
-    };
+/// How badly a bent target lies on the source: the mean distance of the source from it, over its area. What is farther than
+/// [`LOST`] has no twin, however far it is. That the target has more than the source is no fault.
+fn misfit(source: &Surface, target: &Surface, bent: &[DVec3]) -> f64 {
     let lying = target.bent(bent.to_vec());
-    let back = feet(&lying, &Ground::new(&lying), source, &source.positions);
-    mean(target, feet(source, ground, target, bent)) + mean(source, back)
+    let feet = feet(&lying, &Ground::new(&lying), source, &source.positions);
+    let far = feet.iter().zip(&source.mass).map(|(foot, mass)| mass * foot.map_or(LOST, |foot| foot.1.min(LOST)));
+    far.sum::<f64>() / source.mass.iter().sum::<f64>().max(f64::MIN_POSITIVE)
 }

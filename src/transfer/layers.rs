@@ -3,8 +3,9 @@
 //! A skirt or a coat has no pair and often no twin on the source: bent onto it, it would stick to whatever is near, to the
 //! hands that hang beside it for one. It follows what lies beneath it on the target itself, as one garment and evened out.
 
+use super::fill::fill;
 use super::kd_tree::KdTree;
-use super::mend::{SMALL, fill};
+use super::mend::SMALL;
 use super::registration::Foot;
 use super::rig::weights::{Averager, Row, main_bone};
 use super::surface::Surface;

@@ -1,14 +1,11 @@
-//! Weights where the source has nothing like the target, and where they would tear it.
-//!
-//! A tail, a hump or a hat of the target may have no twin on the source: it follows what it grows from. And wherever two
-//! neighbours follow motions that lead far apart, more than anything on the source comes apart, weights are averaged there
-//! until they do not. What is small and loose, such as a button or an eye, keeps its shape.
+//! Weights where they would tear the target: wherever two neighbours follow motions that lead far apart, more than anything
+//! on the source comes apart, weights are averaged until they do not. What is small and loose, such as a button or an eye,
+//! keeps its shape.
 
 use super::rig::blend;
 use super::rig::weights::{Averager, Row, normalised};
 use super::surface::Surface;
 use glam::{DAffine3, DVec3};
-use std::cmp::Reverse;
 use std::collections::{BTreeMap, BinaryHeap};
 
 /// Edges may become longer by this factor in any case,
@@ -28,35 +25,6 @@ const WIDTH: f64 = 1.0;
 pub const SMALL: f64 = 0.1;
 /// Edges shorter than this, in radii, count as so long: slivers tell nothing.
 const SHORT: f64 = 2e-3;
-
-/// Gives `lost` vertices the rows of the nearest others along the surface; pieces that are lost altogether stay.
-pub fn fill(surface: &Surface, rows: &mut [Row], lost: &[bool]) {
-    let mut from: Vec<u32> = (0..rows.len() as u32).collect();
-    let mut distance: Vec<f64> = lost.iter().map(|&lost| if lost { f64::INFINITY } else { 0.0 }).collect();
-    let mut heap: BinaryHeap<(Reverse<u64>, Reverse<u32>)> = BinaryHeap::new();
-    for v in (0..rows.len()).filter(|&v| !lost[v] && surface.neighbours(v).iter().any(|&u| lost[u as usize])) {
-        heap.push((Reverse(0), Reverse(v as u32)));
-    }
-    // Distances are not negative, so their bits are ordered like their values.
-    while let Some((Reverse(bits), Reverse(v))) = heap.pop() {
-        let (d, v) = (f64::from_bits(bits), v as usize);
-        if d > distance[v] {
-            continue;
-        }
-        for &u in surface.neighbours(v) {
-            let u = u as usize;
-            let further = d + surface.positions[v].distance(surface.positions[u]);
-            if further < distance[u] {
-                (distance[u], from[u]) = (further, from[v]);
-                heap.push((Reverse(further.to_bits()), Reverse(u as u32)));
-            }
-        }
-    }
-    for v in (0..rows.len()).filter(|&v| lost[v]) {
-        let row = rows[from[v] as usize].clone();
-        rows[v] = row;
-    }
-}
 
 /// By how much edges of a moving surface may become longer on another that follows it.
 pub fn allowed(surface: &Surface, poses: &[&[DVec3]]) -> f64 {

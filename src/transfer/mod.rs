@@ -15,6 +15,7 @@ pub mod biharmonic;
 mod checked;
 pub mod correspondence;
 mod error;
+mod fill;
 pub mod gradients;
 pub mod growth;
 pub mod joints;

@@ -4,6 +4,7 @@ use super::alignment::{Alignment, align};
 use super::bending::Bending;
 use super::biharmonic::{self, carried};
 use super::checked::{checked, surfaces};
+use super::fill::fill;
 use super::growth::{grown, growth, shrunk};
 use super::joints::Joints;
 use super::layers::{self, Pieces};
@@ -235,7 +236,7 @@ impl Prepared {
         let feet = self.bending.feet(&self.source, &self.target, bent);
         let mut rows: Vec<Row> = feet.iter().map(|foot| self.pulled(foot.map(|f| f.0))).collect();
         let lost: Vec<bool> = feet.iter().map(|foot| foot.is_none_or(|f| f.1 > LOST)).collect();
-        mend::fill(&self.target, &mut rows, &lost);
+        fill(&self.target, &mut rows, &lost);
         let rounds = (SMOOTHING * self.target.len()).div_ceil(SMOOTHED).clamp(2, MOST_SMOOTHING);
         rows = averaged(&self.target, rows, INFLUENCES, rounds);
         let (here, there) = self.pieces(pairs);

@@ -23,6 +23,10 @@ const AGREE: f64 = 0.3;
 /// What lies farther from the source than this, in its radii, after the first rounds of growth has no twin there.
 pub const LOST: f64 = 0.08;
 const ROUGH: usize = 2;
+/// A vertex of the target is not drawn to places of the source that belong to others: by what is known of the nearest, it
+/// lies farther away than this, and than that is from there so many times.
+const ELSEWHERE: f64 = 0.35;
+const STEEP: f64 = 3.0;
 /// Cotangents are kept above this: obtuse triangles do not push.
 const LEAST_COTANGENT: f64 = 0.01;
 
@@ -75,6 +79,16 @@ pub struct Pin {
     pub point: DVec3,
 }
 
+/// What is known of where the target lies.
+#[derive(Clone, Copy, Debug)]
+pub struct Known<'a> {
+    /// What is held there.
+    pub pins: &'a [Pin],
+    /// What is thought to lie near there: a tail that the source has not, so that its legs are what is nearest, is not
+    /// drawn to these if it is known whose they are.
+    pub hints: &'a [Pin],
+}
+
 /// How many rounds are done.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Effort {
@@ -121,10 +135,11 @@ impl Registration {
         target: &Surface,
         rest: &[DVec3],
         start: Vec<DVec3>,
-        pins: &[Pin],
+        known: Known,
         effort: Effort,
     ) -> Vec<DVec3> {
         let mut at = start;
+        let owners = Owners::new(known);
         let (first, rounds) = match effort {
             Effort::Whole => (0, ROUNDS),
             Effort::Once => (0, 1),
@@ -133,8 +148,8 @@ impl Registration {
         for level in first..PULLS.len() {
             for _ in 0..rounds {
                 let reach = if level < ROUGH { f64::INFINITY } else { LOST };
-                let mut goal = goals(source, ground, target, &at, reach);
-                pins.iter().for_each(|pin| goal[pin.vertex as usize] = pin.point);
+                let mut goal = goals((source, ground), target, &at, &owners, reach);
+                known.pins.iter().for_each(|pin| goal[pin.vertex as usize] = pin.point);
                 self.solve(level, target, rest, &mut at, &goal);
             }
         }
@@ -180,20 +195,44 @@ impl Registration {
     }
 }
 
-/// For each vertex the nearest place of the source, or where it is if that faces another way or is farther than `lost`.
-fn goals(source: &Surface, ground: &Ground, target: &Surface, at: &[DVec3], lost: f64) -> Vec<DVec3> {
-    let normals = target.normals_of(at);
-    at.iter()
-        .zip(&normals)
-        .map(|(&p, &n)| match ground.foot(source, p, n) {
-            Some((_, foot, vertex))
-                if source.normals[vertex as usize].dot(n) > AGREE && foot.distance_squared(p) < lost * lost =>
-            {
-                foot
-            }
-            _ => p,
+/// Whose the places of the source are, as far as that is known.
+struct Owners {
+    tree: KdTree<3>,
+    pins: Vec<Pin>,
+}
+
+impl Owners {
+    fn new(known: Known) -> Self {
+        let pins: Vec<Pin> = known.pins.iter().chain(known.hints).copied().collect();
+        Self { tree: KdTree::new(&pins.iter().map(|pin| pin.point.to_array()).collect::<Vec<_>>()), pins }
+    }
+
+    /// Whether a place of the source may be that of a vertex of the target.
+    fn allow(&self, target: &Surface, vertex: usize, place: DVec3) -> bool {
+        let nearest = self.tree.nearest(&place.to_array(), |_| true).and_then(|number| self.pins.get(number as usize));
+        nearest.is_none_or(|pin| {
+            let apart = target.positions[vertex].distance(target.positions[pin.vertex as usize]);
+            apart < ELSEWHERE + STEEP * place.distance(pin.point)
         })
-        .collect()
+    }
+}
+
+/// For each vertex the nearest place of the source, or where it is if that faces another way, is farther than `lost`, or
+/// another's.
+fn goals(
+    (source, ground): (&Surface, &Ground),
+    target: &Surface,
+    at: &[DVec3],
+    owners: &Owners,
+    lost: f64,
+) -> Vec<DVec3> {
+    let normals = target.normals_of(at);
+    let goal = |(v, (&p, &n)): (usize, (&DVec3, &DVec3))| {
+        let (_, foot, vertex) = ground.foot(source, p, n)?;
+        let agrees = source.normals[vertex as usize].dot(n) > AGREE && foot.distance_squared(p) < lost * lost;
+        (agrees && owners.allow(target, v, foot)).then_some(foot)
+    };
+    at.iter().zip(&normals).enumerate().map(|vertex| goal(vertex).unwrap_or(*vertex.1.0)).collect()
 }
 
 /// For each vertex of the bent target its place on the source, and how far that is.

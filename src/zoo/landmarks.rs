@@ -117,12 +117,13 @@ const DINOSAUR: &[Place] = &[
     tip("left toes", "left toes"),
     tip("right toes", "right toes"),
     tip("jaw", "jaw"),
-    side("middle of the tail", "tail 3", 0.5, UP),
+    side("sacrum", "pelvis", 0.5, UP),
+    side("loin", "pelvis", 1.0, UP),
     tip("tail tip", "tail 5"),
 ];
 
-/// Places of person and dinosaur that go together under different names: the tail is held by the lower back.
-const ALIKE: [(&str, &str); 3] = [("chin", "jaw"), ("sacrum", "middle of the tail"), ("loin", "tail tip")];
+/// Places of person and dinosaur that go together under different names.
+const ALIKE: (&str, &str) = ("chin", "jaw");
 
 const SNAKE: &[Place] = &[
     tip("snout", "head"),
@@ -299,7 +300,7 @@ pub fn landmark_pairs(a: &Creature, b: &Creature) -> Vec<(&'static str, u32, u32
     if strangers(from, to) || strangers(to, from) {
         return here.iter().zip(&there).map(|(&(name, v), &(_, w))| (name, v, w)).collect();
     }
-    let alike = |a: &str, b: &str| a == b || ALIKE.iter().any(|&(x, y)| (x, y) == (a, b) || (y, x) == (a, b));
+    let alike = |a: &str, b: &str| a == b || ALIKE == (a, b) || ALIKE == (b, a);
     let twin = |name: &str| there.iter().find(|(other, _)| alike(name, other));
     here.iter().filter_map(|&(name, v)| Some((name, v, twin(name)?.1))).collect()
 }

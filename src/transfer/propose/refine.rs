@@ -8,7 +8,7 @@ use super::consensus::Consensus;
 use super::surface::Surface;
 use crate::sequence::Sequence;
 use crate::transfer::kd_tree::KdTree;
-use crate::transfer::registration::{Effort, Ground, Pin, Registration};
+use crate::transfer::registration::{Effort, Ground, Known, Pin, Registration};
 use crate::transfer::spline::Spline;
 use crate::transfer::surface::Surface as Shape;
 use glam::DVec3;
@@ -62,8 +62,9 @@ impl Refiner {
             .given()
             .map(|(point, sample)| Pin { vertex: self.target.place[sample as usize], point: inward(point) })
             .collect();
+        let known = Known { pins: &pins, hints: &[] };
         let bent =
-            self.registration.bend((&self.source, &self.ground), &self.target, &shape, start, &pins, Effort::Once);
+            self.registration.bend((&self.source, &self.ground), &self.target, &shape, start, known, Effort::Once);
         let outward = |p: DVec3| p * self.source.radius + self.source.centre;
         (0..places.len()).map(|s| bent.get(self.target.place[s] as usize).map_or(places[s], |&p| outward(p))).collect()
     }

@@ -17,7 +17,7 @@ const ROUNDS: usize = 3;
 /// Rounds of averaging that turn the hard bones into the first weights.
 const SOFTEN: usize = 4;
 /// Shares below this are dropped.
-const LEAST: f64 = 1e-4;
+pub const LEAST: f64 = 1e-4;
 
 /// #N rows of bones and their shares.
 pub fn bind(surface: &Surface, poses: &[&[DVec3]], bones: &Bones) -> Vec<Row> {
