@@ -147,6 +147,12 @@ impl Sequence {
         &self.poses
     }
 
+    /// The positions of the reference and of every pose, to be moved: #V finite ones they must stay.
+    pub(crate) fn positions_mut(&mut self) -> impl Iterator<Item = &mut [DVec3]> {
+        let poses = self.poses.iter_mut().map(|pose| pose.positions.as_mut_slice());
+        std::iter::once(self.reference.as_mut_slice()).chain(poses)
+    }
+
     /// The input polygon that each triangle was cut from; `None` where every input polygon was a triangle.
     pub fn polygons(&self) -> Option<&[u32]> {
         self.polygons.as_deref()

@@ -278,6 +278,38 @@ fn transfer_by_faces_reads_lines_and_compares_methods() {
     assert!(String::from_utf8_lossy(&output.stderr).contains("its first line says 9"));
 }
 
+/// The strip lies in the plane of x and y, and what bends goes along z: that is up.
+#[test]
+fn figures_are_raised_and_poses_are_written_as_the_target_lies() {
+    let folder = folder("up");
+    strip(&folder);
+    std::fs::write(folder.join("pairs.cons"), "4\n0, 0\n2, 2\n3, 3\n6, 6\n").unwrap();
+    let line = "transfer rest.obj pose.2.obj pose.10.obj --up z --target rest.obj --target-up z --pairs pairs.cons \
+                --method gradients --out out.glb --out-poses poses --report report.json --truth pose.2.obj pose.10.obj";
+    let output = sinew(&folder, &line.split_whitespace().collect::<Vec<_>>());
+    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+    let error = json(&std::fs::read(folder.join("report.json")).unwrap())["error"]["mean"].as_f64().unwrap();
+    assert!(error < 1e-6, "the truth is raised as the target is: {error}");
+    let read = |name: &str| {
+        let file = sinew::import::File { name: name.into(), bytes: std::fs::read(folder.join(name)).unwrap() };
+        let options = sinew::import::Options { sampling: sinew::import::Sampling::Keys, ..Default::default() };
+        sinew::import::open(&[file], &options).unwrap().sequence
+    };
+    let (written, truth) = (read("poses/pose_001.obj"), read("pose.10.obj"));
+    for (a, b) in written.reference().iter().zip(truth.reference()) {
+        assert!(a.distance(*b) < 1e-6, "{a} is not {b}");
+    }
+    let raised = read("out.glb");
+    let last = &raised.poses().last().unwrap().positions;
+    let height = last.iter().map(|p| p.y).fold(0.0, f64::max) - last.iter().map(|p| p.y).fold(0.0, f64::min);
+    assert!((height - 1.0).abs() < 1e-6, "other programs see it upright, {height} high");
+    let report = json(&sinew(&folder, &["inspect", "rest.obj", "--up", "-x", "--json"]).stdout);
+    assert_eq!(report["up"], "-x");
+    let output = sinew(&folder, &["inspect", "rest.obj", "--up", "w"]);
+    assert_eq!(output.status.code(), Some(2));
+    assert!(String::from_utf8_lossy(&output.stderr).contains("expected one of"));
+}
+
 #[test]
 fn a_target_keeps_the_materials_that_lie_beside_it() {
     let outside = folder("materials");

@@ -18,11 +18,13 @@ mod polygons;
 mod seams;
 mod stl;
 mod text;
+mod upright;
 mod zip;
 
 pub use archive::may_be_needed;
 pub use natural::natural_order;
 pub use obj::needed as needed_for_look;
+pub use upright::Up;
 
 use crate::look::Look;
 use crate::sequence::Sequence;
@@ -54,11 +56,21 @@ pub struct Options {
     pub weld: bool,
     /// Read what the mesh looks like, too (glTF and OBJ only).
     pub look: bool,
+    /// The axis that is up in the files; what their format says if `None`: z for STL, which is made for construction and
+    /// printing, y for all else.
+    pub up: Option<Up>,
 }
 
 impl Default for Options {
     fn default() -> Self {
-        Self { clip: None, sampling: Sampling::default(), reference: Reference::default(), weld: true, look: false }
+        Self {
+            clip: None,
+            sampling: Sampling::default(),
+            reference: Reference::default(),
+            weld: true,
+            look: false,
+            up: None,
+        }
     }
 }
 
@@ -103,8 +115,10 @@ pub struct Clip {
 /// A file, read.
 #[derive(Clone, Debug)]
 pub struct Imported {
-    /// The mesh and its poses.
+    /// The mesh and its poses, y being up.
     pub sequence: Sequence,
+    /// The axis that was up in the files.
+    pub up: Up,
     /// The animations that the file has (empty for OBJ, OFF, PLY and STL).
     pub clips: Vec<Clip>,
     /// The clip that was sampled: an index into `clips`.
@@ -149,7 +163,7 @@ pub fn open(files: &[File], options: &Options) -> Result<Imported, ImportError> 
     let files = unpacked.as_ref();
     let mut order: Vec<&File> = files.iter().collect();
     natural::sort(&mut order);
-    open_listed(&order, files, options).map_err(ImportError::on_one_line)
+    open_listed(&order, files, options)
 }
 
 /// Reads the given files in the given order, as on a command line: of OBJ, OFF, PLY and STL files the first is the
@@ -157,11 +171,12 @@ pub fn open(files: &[File], options: &Options) -> Result<Imported, ImportError> 
 pub fn open_in_order(files: &[File], options: &Options) -> Result<Imported, ImportError> {
     let unpacked = unpacked(files, options.look)?;
     let files = unpacked.as_ref();
-    open_listed(&files.iter().collect::<Vec<_>>(), files, options).map_err(ImportError::on_one_line)
+    open_listed(&files.iter().collect::<Vec<_>>(), files, options)
 }
 
 /// Reads more files for a mesh that was opened before from `still` and stands still: its poses, where they are meshes
-/// of the same kind, with as many vertices and faces. Otherwise as [`open`] with `more` alone.
+/// of the same kind, with as many vertices and faces. Otherwise as [`open`] with `more` alone. `options.up` is that of the
+/// mesh and its poses; what stands alone is up as its format says.
 ///
 /// Returns with the result whether the poses joined the mesh.
 pub fn open_more(still: &[File], more: &[File], options: &Options) -> Result<(Imported, bool), ImportError> {
@@ -177,12 +192,13 @@ pub fn open_more(still: &[File], more: &[File], options: &Options) -> Result<(Im
         let all: Vec<_> = [resting].into_iter().chain(&moving.meshes).copied().collect();
         match numbered::open(&all, None) {
             Ok(joined) if all.len() > 1 && !joined.warnings.iter().any(|w| w.code == numbered::DIFFERENT) => {
-                return Ok((joined, true));
+                return Ok((upright::upright(joined, options.up), true));
             }
             _ => {}
         }
     }
-    open_listed(&poses, more, options).map(|imported| (imported, false)).map_err(ImportError::on_one_line)
+    let options = Options { up: None, ..options.clone() };
+    open_listed(&poses, more, &options).map(|imported| (imported, false))
 }
 
 /// The files, with what is in archives in place of these.
@@ -223,6 +239,11 @@ fn sorted_out<'a>(files: impl Iterator<Item = &'a File>) -> SortedOut<'a> {
 }
 
 fn open_listed(order: &[&File], files: &[File], options: &Options) -> Result<Imported, ImportError> {
+    let imported = read_listed(order, files, options).map_err(ImportError::on_one_line)?;
+    Ok(upright::upright(imported, options.up))
+}
+
+fn read_listed(order: &[&File], files: &[File], options: &Options) -> Result<Imported, ImportError> {
     let found = sorted_out(order.iter().copied());
     match (found.documents.as_slice(), found.meshes.as_slice()) {
         ([document], meshes) => {

@@ -2,7 +2,7 @@
 
 use super::limits::Budget;
 use super::polygons::PolygonMesh;
-use super::{File, ImportError, Imported, counted, obj, off, ply, seams, stl};
+use super::{File, ImportError, Imported, Up, counted, obj, off, ply, seams, stl};
 use crate::sequence::{Pose, Sequence};
 use crate::warning::Warning;
 
@@ -20,6 +20,16 @@ pub enum Format {
     Ply,
     /// STL.
     Stl,
+}
+
+impl Format {
+    /// The axis that is up in most files of it.
+    fn up(self) -> Up {
+        match self {
+            Self::Obj | Self::Off | Self::Ply => Up::Y,
+            Self::Stl => Up::Z,
+        }
+    }
 }
 
 /// The warning that files name other vertices in their faces.
@@ -85,7 +95,7 @@ pub fn open(files: &[(&File, Format)], beside: Option<&[File]>) -> Result<Import
     if cut {
         sequence = sequence.with_polygons(polygons).map_err(wrong)?;
     }
-    Ok(Imported { sequence, clips: Vec::new(), clip: None, input_faces, look, warnings })
+    Ok(Imported { sequence, up: first.1.up(), clips: Vec::new(), clip: None, input_faces, look, warnings })
 }
 
 fn read((file, format): &(&File, Format), said: Option<&mut obj::Said>) -> Result<PolygonMesh, ImportError> {

@@ -2,7 +2,7 @@
 
 use super::gltf_maker::triangle;
 use super::{QUAD, close, file, unwelded};
-use sinew::import::{File, Options, open, open_in_order, open_more};
+use sinew::import::{File, Options, Up, open, open_in_order, open_more};
 use std::io::Write;
 use zip::write::SimpleFileOptions;
 use zip::{CompressionMethod, ZipWriter};
@@ -115,6 +115,33 @@ fn poses_join_a_mesh_that_stands_still() {
     assert!(open_more(&still, &[file("b.obj", "v x")], &Options::default()).is_err());
 }
 
+#[test]
+fn what_is_up_in_the_files_is_up_in_all_poses() {
+    let still = [file("horse.obj", QUAD)];
+    let more = [file("gallop 1.obj", pose(7))];
+    let raised = Options { up: Some(Up::Z), ..Options::default() };
+    let opened = open(&[still[0].clone(), more[0].clone()], &raised).unwrap();
+    assert_eq!(opened.up, Up::Z);
+    // The first in natural order is the gallop.
+    close(opened.sequence.reference()[3], [0.0, 7.0, -1.0]);
+    close(opened.sequence.poses()[0].positions[3], [0.0, 0.0, -1.0]);
+    // What joins a mesh has the same axis up; what does not is no business of its.
+    let (joined, with) = open_more(&still, &more, &raised).unwrap();
+    assert!(with);
+    close(joined.sequence.reference()[3], [0.0, 0.0, -1.0]);
+    close(joined.sequence.poses()[0].positions[3], [0.0, 7.0, -1.0]);
+    let other = [file("b.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3")];
+    let (alone, with) = open_more(&still, &other, &raised).unwrap();
+    assert_eq!((with, alone.up), (false, Up::Y));
+    close(alone.sequence.reference()[2], [0.0, 1.0, 0.0]);
+    // A glTF says it, and may be wrong.
+    let made = [file("made.glb", triangle().glb())];
+    let (said, told) = (open(&made, &unwelded()).unwrap(), open(&made, &Options { up: Some(Up::NegX), ..unwelded() }));
+    assert_eq!(said.up, Up::Y);
+    let lowered = told.unwrap().sequence.reference().iter().map(|&p| Up::NegX.lowered(p)).collect::<Vec<_>>();
+    assert_eq!(lowered, said.sequence.reference());
+}
+
 /// Two triangles that share an edge, as STL has them; `z` lifts one corner of the second.
 fn soup(z: f32) -> Vec<u8> {
     let mut bytes = vec![0; 80];
@@ -131,7 +158,8 @@ fn soup(z: f32) -> Vec<u8> {
 fn soups_are_welded_in_all_their_poses() {
     let opened = open(&[file("a.stl", soup(0.0)), file("b.stl", soup(3.0))], &Options::default()).unwrap();
     assert_eq!(opened.sequence.faces(), [[0, 1, 2], [1, 3, 2]]);
-    close(opened.sequence.poses()[0].positions[3], [1.0, 1.0, 3.0]);
+    // Their z is up.
+    close(opened.sequence.poses()[0].positions[3], [1.0, 3.0, -1.0]);
     assert!(opened.warnings.is_empty(), "{:?}", opened.warnings);
     let mut flat = soup(0.0);
     // A triangle of one point is left out, and one is left.

@@ -3,7 +3,7 @@
 use crate::Refusal;
 use clap::{Args, ValueEnum};
 use sinew::import::{
-    File, Imported, Options, Reference, Sampling, may_be_needed, natural_order, needed_for_look, open_in_order,
+    File, Imported, Options, Reference, Sampling, Up, may_be_needed, natural_order, needed_for_look, open_in_order,
 };
 use sinew::warning::Warning;
 use std::collections::BTreeSet;
@@ -32,6 +32,25 @@ pub struct Input {
     /// Keep vertices apart that agree in every pose (seams of texture and normals)
     #[arg(long)]
     no_weld: bool,
+    /// The axis that is up in the files: x, y, z, -x, -y or -z (default: z for STL, y for all else)
+    #[arg(long, value_name = "AXIS", value_parser = axis, allow_hyphen_values = true)]
+    up: Option<Up>,
+}
+
+/// The other mesh, and how to read it.
+#[derive(Args)]
+pub struct Target {
+    /// The mesh that is to move, or on which points are to be found: its reference pose
+    #[arg(long, value_name = "MESH")]
+    target: PathBuf,
+    /// The axis that is up in the target and in its true poses (named and chosen as with --up)
+    #[arg(long, value_name = "AXIS", value_parser = axis, allow_hyphen_values = true)]
+    target_up: Option<Up>,
+}
+
+/// An axis by its name.
+fn axis(name: &str) -> Result<Up, serde_json::Error> {
+    serde_json::from_value(name.into())
 }
 
 #[derive(Clone, Copy, ValueEnum)]
@@ -68,14 +87,21 @@ impl Input {
                 ReferenceArgument::First => Reference::FirstFrame,
             },
             weld: !self.no_weld,
+            up: self.up,
             ..Options::default()
         };
         Ok(open_in_order(&files, &options)?)
     }
 
+    /// Reads the target.
+    pub fn open_target(&self, target: &Target) -> Result<Imported, Refusal> {
+        self.open_still(&target.target, target.target_up)
+    }
+
     /// Reads one more file as a mesh that stands still, its vertices numbered as those of the input are; with its look.
-    pub fn open_still(&self, path: &Path) -> Result<Imported, Refusal> {
-        let options = Options { weld: !self.no_weld, look: true, ..Options::default() };
+    /// `up` as of [`Options`].
+    pub fn open_still(&self, path: &Path, up: Option<Up>) -> Result<Imported, Refusal> {
+        let options = Options { weld: !self.no_weld, look: true, up, ..Options::default() };
         let mut files = vec![read(path)?];
         files.extend(beside(path)?);
         files.extend(materials(path, &files[0]));

@@ -41,6 +41,7 @@ fn report(imported: &Imported) -> Value {
         "vertices": sizes.vertices,
         "faces": sizes.faces,
         "input_faces": imported.input_faces,
+        "up": imported.up,
         "components": pieces(sequence.faces(), sizes.vertices).count,
         "poses": sizes.poses,
         "seconds": sequence.poses().last().map_or(0.0, |pose| pose.time),

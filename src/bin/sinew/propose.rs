@@ -1,7 +1,7 @@
 //! `sinew propose`: where key points of one mesh lie on another.
 
 use crate::Refusal;
-use crate::input::{Input, print_warnings};
+use crate::input::{Input, Target, print_warnings};
 use crate::lists;
 use crate::output::{self, say};
 use clap::Args;
@@ -16,9 +16,8 @@ use std::path::PathBuf;
 pub struct Propose {
     #[command(flatten)]
     input: Input,
-    /// The mesh on which the points are to be found
-    #[arg(long, value_name = "MESH")]
-    target: PathBuf,
+    #[command(flatten)]
+    target: Target,
     /// Vertex numbers of the source, separated by white space or as a JSON list, or a report of key points
     #[arg(long, value_name = "FILE")]
     points: PathBuf,
@@ -34,7 +33,7 @@ impl Propose {
     /// Reads both meshes, proposes, and prints or writes the proposals.
     pub fn run(&self) -> Result<(), Refusal> {
         let source = self.input.open()?;
-        let target = self.input.open_still(&self.target)?;
+        let target = self.input.open_target(&self.target)?;
         let points = lists::vertices(&self.points)?;
         let pairs = self.pairs.as_deref().map(lists::pairs).transpose()?.unwrap_or_default();
         let known: Vec<Option<u32>> =

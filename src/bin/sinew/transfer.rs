@@ -4,7 +4,7 @@ mod compare;
 mod faces;
 
 use crate::Refusal;
-use crate::input::{Input, print_warnings};
+use crate::input::{Input, Target, print_warnings};
 use crate::lists;
 use crate::output::{self, counted, say};
 use clap::{Args, ValueEnum};
@@ -12,7 +12,7 @@ use glam::DVec3;
 use serde_json::{Map, Value, json};
 use sinew::clock;
 use sinew::export::animation::{Influences, Skin, SkinPose, exact, light};
-use sinew::import::{File, Imported, natural_order};
+use sinew::import::{File, Imported, Up, natural_order};
 use sinew::mesh::ball::unit_ball;
 use sinew::observer::Silent;
 use sinew::sequence::{Pose, Sequence};
@@ -28,9 +28,8 @@ const BOUNDS: [f64; 10] = [0.0025, 0.005, 0.0075, 0.01, 0.015, 0.02, 0.03, 0.05,
 pub struct Transfer {
     #[command(flatten)]
     input: Input,
-    /// The mesh that is to move: its reference pose
-    #[arg(long, value_name = "MESH")]
-    target: PathBuf,
+    #[command(flatten)]
+    target: Target,
     /// Corresponding vertices: [{"source": 12, "target": 34}, …], lines of two numbers (.cons), or a report of proposals
     #[arg(long, value_name = "FILE")]
     pairs: PathBuf,
@@ -50,13 +49,13 @@ pub struct Transfer {
     /// report says what error that adds
     #[arg(long, requires = "out")]
     light: bool,
-    /// Write one OBJ a pose, with the target's own vertices and polygons
+    /// Write one OBJ a pose, with the target's own vertices, polygons and axes
     #[arg(long, value_name = "DIR")]
     out_poses: Option<PathBuf>,
     /// Write parameters, seconds, errors and warnings as JSON
     #[arg(long, value_name = "FILE.json")]
     report: Option<PathBuf>,
-    /// The target's true poses, to measure the result against: files, or a folder of files in natural order (glTF and STL:
+    /// The target's true poses in its own axes, to measure the result against: files, or a folder of files in natural order (glTF and STL:
     /// with --no-weld, for points that meet in one pose only would be joined)
     #[arg(long, value_name = "FILE", num_args = 1..)]
     truth: Vec<PathBuf>,
@@ -94,7 +93,7 @@ impl Transfer {
     pub fn run(&self) -> Result<(), Refusal> {
         let start = clock::seconds();
         let source = self.input.open()?;
-        let target = self.input.open_still(&self.target)?;
+        let target = self.input.open_target(&self.target)?;
         let pairs = lists::pairs(&self.pairs)?;
         let reading = clock::seconds() - start;
         if let Some(path) = &self.compare {
@@ -110,9 +109,9 @@ impl Transfer {
         let positions = result.poses(target.sequence.reference());
         let blending = clock::seconds() - begun;
         let moved = moved(&source.sequence, &target.sequence, positions)?;
-        let errors = if self.truth.is_empty() { None } else { Some(self.measure(&target.sequence, &moved)?) };
+        let errors = if self.truth.is_empty() { None } else { Some(self.measure(&target, &moved)?) };
         if let Some(folder) = &self.out_poses {
-            write_poses(folder, &moved)?;
+            write_poses(folder, &moved, target.up)?;
         }
         let mut added = None;
         if let Some(path) = &self.out {
@@ -141,17 +140,17 @@ impl Transfer {
         Ok(())
     }
 
-    /// How far the moving target is from the truth.
-    fn measure(&self, target: &Sequence, moved: &Sequence) -> Result<Errors, Refusal> {
+    /// How far the moving target is from the truth, in whose files the same axis is up as in the target's.
+    fn measure(&self, target: &Imported, moved: &Sequence) -> Result<Errors, Refusal> {
         let files = truth_files(&self.truth)?;
-        let (_, radius) = unit_ball(target.faces(), target.reference());
+        let (_, radius) = unit_ball(target.sequence.faces(), target.sequence.reference());
         if files.len() != moved.poses().len() {
             let [truth, poses] = [counted(files.len(), "true pose"), counted(moved.poses().len(), "pose")];
             return Err(Refusal(format!("there are {truth} for {poses}; one file a pose is needed")));
         }
         let mut errors = Errors { mean: 0.0, of_poses: Vec::new(), within: vec![0.0; BOUNDS.len()] };
         for (path, pose) in files.iter().zip(moved.poses()) {
-            let truth = self.input.open_still(path)?.sequence;
+            let truth = self.input.open_still(path, Some(target.up))?.sequence;
             if truth.reference().len() != pose.positions.len() {
                 let [found, expected] = [truth.reference().len(), pose.positions.len()];
                 return Err(Refusal(format!("{} has {found} vertices, the target has {expected}", path.display())));
@@ -270,15 +269,16 @@ fn write_light(path: &Path, source: &Sequence, target: &Imported, result: &Resul
     Ok([light.rms, light.largest])
 }
 
-/// One OBJ a pose. Where faces were cut from polygons, the polygons are put together again.
-fn write_poses(folder: &Path, moved: &Sequence) -> Result<(), Refusal> {
+/// One OBJ a pose, with the axis up that was up in the target's file. Where faces were cut from polygons, the polygons are
+/// put together again.
+fn write_poses(folder: &Path, moved: &Sequence, up: Up) -> Result<(), Refusal> {
     std::fs::create_dir_all(folder)
         .map_err(|error| Refusal(format!("{} cannot be made: {error}", folder.display())))?;
     let faces = polygons(moved);
     let digits = moved.poses().len().to_string().len().max(3);
     for (number, pose) in moved.poses().iter().enumerate() {
         let mut text = String::new();
-        for p in &pose.positions {
+        for p in pose.positions.iter().map(|&p| up.lowered(p)) {
             // Writing to a string cannot fail.
             let _ = writeln!(text, "v {} {} {}", p.x, p.y, p.z);
         }

@@ -3,7 +3,7 @@
 use super::clip::Motion;
 use super::model::Model;
 use crate::import::seams::{drop_collapsed, extent, weld_seams};
-use crate::import::{File, ImportError, Imported, Options, Reference, Sampling, last_part};
+use crate::import::{File, ImportError, Imported, Options, Reference, Sampling, Up, last_part};
 use crate::sequence::{Pose, Sequence, SequenceError};
 use crate::warning::Warning;
 use glam::DVec3;
@@ -72,7 +72,7 @@ pub fn open(file: &File, files: &[File], options: &Options) -> Result<Imported, 
     if let Some(stay) = stay {
         sequence = sequence.with_polygons(stay).map_err(wrong)?;
     }
-    Ok(Imported { sequence, clips, clip, input_faces, look, warnings: at_most_a_few(warnings) })
+    Ok(Imported { sequence, up: Up::Y, clips, clip, input_faces, look, warnings: at_most_a_few(warnings) })
 }
 
 /// At most a few warnings of each kind, so that a strange file does not bury a person in them.

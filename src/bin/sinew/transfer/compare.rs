@@ -48,7 +48,7 @@ impl Transfer {
             let positions = positions(source, target, pairs, &parameters)?;
             let seconds = clock::seconds() - start;
             let sequence = moved(&source.sequence, &target.sequence, positions)?;
-            rows.push(Row { name, errors: self.measure(&target.sequence, &sequence)?, seconds });
+            rows.push(Row { name, errors: self.measure(target, &sequence)?, seconds });
         }
         output::write_report(path, &report(source, target, pairs, &rows))?;
         print(source, target, &rows);

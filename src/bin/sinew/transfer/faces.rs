@@ -25,9 +25,9 @@ impl Transfer {
         let mut result = mover.transfer(pairs, &mut Silent)?;
         result.seconds.splice(0..0, mover.seconds().iter().copied());
         let sequence = moved(&source.sequence, &target.sequence, std::mem::take(&mut result.poses))?;
-        let errors = if self.truth.is_empty() { None } else { Some(self.measure(&target.sequence, &sequence)?) };
+        let errors = if self.truth.is_empty() { None } else { Some(self.measure(target, &sequence)?) };
         if let Some(folder) = &self.out_poses {
-            write_poses(folder, &sequence)?;
+            write_poses(folder, &sequence, target.up)?;
         }
         if let Some(path) = &self.out {
             output::write(path, exact(&sequence, target.look.as_ref()))?;
