@@ -51,10 +51,9 @@ export function slider({ id: own, label, symbol = '', help, low, high, step, pap
 
 const paperText = ([from, to], reading) => (from === to ? reading(from) : `${reading(from)} to ${reading(to)}`);
 
-/** A drop-down list. `options` are `[value, label]`. */
-export function select(label, options, chosen, change) {
-  const id = idOf(label);
-  const list = h('select', { id, on: { change: () => change(list.value) } },
+/** A drop-down list. `options` are `[value, label]`, `props` those of the list. */
+export function select(label, options, chosen, change, { id = idOf(label), ...props } = {}) {
+  const list = h('select', { id, ...props, on: { change: () => change(list.value) } },
     ...options.map(([value, text]) => h('option', { value, selected: value === chosen }, text)));
   return h('div', { class: 'row' }, h('label', { for: id }, label), list);
 }

@@ -41,6 +41,10 @@ export async function originals(source) {
   return collect(source.files, source.options).catch(() => none);
 }
 
+/** Whether a figure was opened from a glTF, which has clips as no other format has. A file may also be in an archive. */
+export const isGltf = ({ source: { files }, sequence }) =>
+  sequence.clips.length > 0 || files?.some(({ name }) => /\.(glb|gltf)$/i.test(name));
+
 const readAll = (files) => Promise.all(files.map(async ({ name, blob }) => {
   try {
     return { name, bytes: new Uint8Array(await blob.arrayBuffer()) };

@@ -21,6 +21,9 @@ export const MOST_POINTS = 60;
 /** @returns {Point} */
 export const fresh = (source) => Object.freeze({ source, target: null, state: 'missing', confidence: 0 });
 
+/** Points without what was only proposed for them. @param {Point[]} points */
+export const unproposed = (points) => points.map((point) => (point.state === 'proposed' ? fresh(point.source) : point));
+
 export class KeyPoints {
   /** @param {import('./app.js').App} app */
   constructor(app) {
@@ -244,7 +247,7 @@ export class KeyPoints {
     const points = this.used.map(({ source }) => source);
     if (!points.length) return;
     const { run } = app.doc;
-    const known = run && this.untouched && points.length === run.key_points.length;
+    const known = run?.rounds && this.untouched && points.length === run.key_points.length;
     const answer = known ? run : await app.work.run('points', 'weights', () => app.engine.call('fit', { points, parameters: this.parameters }));
     if (!answer) return;
     const { weights, groups, energies, rounds, fit_errors } = answer;

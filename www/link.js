@@ -44,7 +44,7 @@ export function writeLink(app, timeline, { own = false } = {}) {
   }
   if (source?.kind === 'src' || (own && source?.kind === 'files')) {
     for (const [name, value] of Object.entries(source.options)) {
-      if (JSON.stringify(value) !== JSON.stringify(about.options[name])) fields[`import.${name}`] = JSON.stringify(value);
+      if (JSON.stringify(value) !== JSON.stringify(about.options[name])) fields[`import.${name}`] = worded(value);
     }
   }
   for (const [name, value] of Object.entries(app.changes)) fields[`p.${name}`] = JSON.stringify(value);
@@ -112,8 +112,8 @@ export function unknownOf(fields, { creatures, motions }) {
 export function optionsOf(fields, { options }) {
   const wanted = {};
   for (const name of Object.keys(options)) {
-    const value = parse(fields[`import.${name}`]);
-    if (value !== undefined) wanted[name] = value;
+    const text = fields[`import.${name}`];
+    if (text !== undefined) wanted[name] = parse(text, text);
   }
   return wanted;
 }
@@ -142,11 +142,14 @@ export function tourOf({ tour = '' }) {
   return id ? [id, numberOf(stop) ?? 0] : null;
 }
 
-function parse(text) {
+/** A value that {@link parse} reads; a word stands without quotation marks, as people write it. */
+const worded = (value) => (/^-?[a-z]+$/i.test(value) && parse(value) === undefined ? value : JSON.stringify(value));
+
+function parse(text, otherwise = undefined) {
   try {
     return JSON.parse(text);
   } catch {
-    return undefined;
+    return otherwise;
   }
 }
 

@@ -5,6 +5,7 @@ import { Cancelled } from './engine.js';
 import { collect, resting } from './files.js';
 import { plural } from './format.js';
 import { OPENING } from './history.js';
+import { unproposed } from './keypoints.js';
 import { readProject } from './project.js';
 import { WORTH_STOPPING } from './work.js';
 
@@ -32,9 +33,10 @@ export class Opener {
     if (!options && (await this.tookProject(files))) return true;
     // Poses dropped after a mesh that stands still may be that mesh's: the engine tells.
     const { source: before, sequence } = this.app;
-    const still = !options && before?.files && !sequence.sizes.poses ? before.files : null;
+    const still = !options && before?.files && !sequence.sizes.poses ? before : null;
     const source = { kind: 'files', files, still, options: { ...this.app.about.options, ...options } };
-    return this.#open('open', source, () => collect(files, source.options, still));
+    const asked = still ? { ...source.options, up: still.options.up } : source.options;
+    return this.#open('open', source, () => collect(files, asked, still?.files));
   }
 
   /** Opens files as a project, if they are one. @returns {Promise<boolean>} whether they were */
@@ -53,14 +55,19 @@ export class Opener {
     });
   }
 
-  /** Reads the open files again with other options. */
-  reopen(options) {
+  /** Reads the open files again with other options. @param {{turned?: boolean}} [how] see {@link turn} */
+  reopen(options, how) {
     const { kind, files, url, options: before } = this.app.source;
     const source = { kind, files, url, options: { ...before, ...options } };
-    return this.#open('open', source, () => collect(files, source.options));
+    return this.#open('open', source, () => collect(files, source.options), how);
   }
 
-  async #open(operation, source, payload, { afresh = false } = {}) {
+  /** Turns the figure, so that another axis of its files is up. All that was done with it stays. */
+  turn(up) {
+    return this.reopen({ up }, { turned: true });
+  }
+
+  async #open(operation, source, payload, { afresh = false, turned = false } = {}) {
     const { app } = this;
     if (app.busy?.left > WORTH_STOPPING) app.engine.cancel({ all: true });
     this.underWay++;
@@ -74,22 +81,32 @@ export class Opener {
     this.underWay--;
     if (!sequence) return false;
     // From now on they are one drop, the mesh first.
-    if (sequence.joined) source.files = [...resting(source.still), ...source.files];
+    if (sequence.joined) {
+      source.files = [...resting(source.still.files), ...source.files];
+      source.options.up = source.still.options.up;
+    }
     delete source.still;
     // Numbered shapes have no time of their own; a walk made by code closes on itself.
     sequence.timed = sequence.times.some((time, i) => time !== sequence.times[0] && i > 0);
     sequence.loop = source.kind === 'zoo' || !sequence.timed;
-    this.#replace({ source, sequence }, afresh);
+    this.#replace({ source, sequence }, afresh, turned);
     if (sequence.joined) app.say(`${plural(sequence.sizes.poses, 'pose')} of the mesh that was open.`, 'news');
-    else this.#sayWhatWent();
+    else if (!turned) this.#sayWhatWent();
     await app.parts.segment();
     return true;
   }
 
   /** Puts what was opened in place of what was open. @param {Open} open */
-  #replace(open, afresh) {
+  #replace(open, afresh, turned) {
     const { app } = this;
     const before = app.doc;
+    if (turned) {
+      // Errors and weights are the same either way up; the maps of a fit are not, and are found again.
+      const run = before.run && { ...before.run, rounds: null };
+      app.edit({ open, run, points: unproposed(before.points) });
+      this.#makeRoom();
+      return;
+    }
     // A target stays: what is new is to move it as well. So do points in which there is work, where they mean the same.
     const { changes, target, method } = before;
     // How many points were given says nothing of how many are wanted.

@@ -4,11 +4,13 @@
  */
 import { choice } from './controls.js';
 import { h, iconButton, show } from './dom.js';
+import { isGltf } from './files.js';
 import { title } from './format.js';
 import { pins } from './pins.js';
 import { NARROW } from './screens.js';
 import { link } from './stage.js';
 import { stepNamed } from './steps/index.js';
+import { upright } from './upright.js';
 
 /** How far a figure stays away from the other's picture and from the outer edge, in pixels; on a phone, less. */
 const APART = { inner: 28, outer: 28 };
@@ -30,7 +32,9 @@ export class Studio {
     this.seam = seam;
     this.make = make;
     this.captions = hosts.map((host) => h('p', { class: 'caption small', hidden: true }));
-    hosts.forEach((host, i) => host.append(this.captions[i]));
+    /** Where a figure may lie on its side, because its files do not say what is up. */
+    this.corners = hosts.map(() => h('div', { class: 'corner small' }));
+    hosts.forEach((host, i) => host.append(this.captions[i], this.corners[i]));
     this.linked = true;
     this.unlink = null;
     /** What a phone shows: `both`, `source` or `target`. */
@@ -118,6 +122,8 @@ export class Studio {
       caption.hidden = !this.two;
       caption.textContent = names[i];
     });
+    [app.doc.open, app.doc.target].forEach((figure, i) =>
+      show(this.corners[i], figure && (!isGltf(figure) || figure.source.options.up) && upright(app, i ? 'target' : 'source', 'picture')));
     this.#showSeam(names);
   }
 
@@ -173,6 +179,8 @@ export class Studio {
       for (const stage of i ? [this.app.second] : [this.app.stage, this.app.third]) stage?.lie(insets, both ? margins : null);
       this.captions[i].style.setProperty('left', `${stacked ? insets[0] : (insets[0] + box.width - insets[2]) / 2}px`);
       this.captions[i].style.setProperty('top', `${insets[1]}px`);
+      this.corners[i].style.setProperty('left', `${insets[0]}px`);
+      this.corners[i].style.setProperty('top', `${insets[1]}px`);
     });
   }
 }

@@ -2,7 +2,7 @@
 import { Cancelled } from './engine.js';
 import { collect } from './files.js';
 import { OPENING } from './history.js';
-import { fresh } from './keypoints.js';
+import { fresh, unproposed } from './keypoints.js';
 import { latest } from './work.js';
 
 /**
@@ -45,7 +45,14 @@ export class Target {
     return this.#open(source, () => collect(files, source.options), how);
   }
 
-  async #open(source, payload, { places, mark = null } = {}) {
+  /** Turns the target, so that another axis of its files is up. What was placed on it stays. */
+  turn(up) {
+    const { source } = this.app.doc.target;
+    const turned = { ...source, options: { ...source.options, up } };
+    return this.#open(turned, () => collect(source.files, turned.options), { turned: true });
+  }
+
+  async #open(source, payload, { places, turned = false, mark = null } = {}) {
     const { app } = this;
     const sequence = await app.work.run('target', source.kind === 'zoo' ? 'making the creature' : 'reading', async (progress, signal) => {
       const message = await payload();
@@ -56,7 +63,7 @@ export class Target {
     if (!sequence) return false;
     this.known = sequence;
     app.engine.keepTarget(sequence);
-    const points = places?.(sequence.sizes.vertices) ?? app.doc.points.map(({ source: vertex }) => fresh(vertex));
+    const points = places?.(sequence.sizes.vertices) ?? (turned ? unproposed(app.doc.points) : app.doc.points.map(({ source: vertex }) => fresh(vertex)));
     app.edit({ target: { source, sequence }, points, ...(places && { count: points.length, run: null }) }, mark);
     return true;
   }

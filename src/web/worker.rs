@@ -117,7 +117,7 @@ impl Engine {
         let creature =
             zoo::make(&recipe).ok_or_else(|| sentence(format!("There is no creature called “{}”.", recipe.name)))?;
         let sequence = rounded(&creature.sequence)?;
-        let reply = describe(&sequence, &[], None, &[])?;
+        let reply = describe(&sequence, None)?;
         self.replace(sequence);
         Ok(reply)
     }
@@ -195,7 +195,7 @@ impl Engine {
 
     fn opened(&mut self, imported: &Imported) -> Reply {
         let sequence = rounded(&imported.sequence)?;
-        let reply = describe(&sequence, &imported.clips, imported.clip, &imported.warnings)?;
+        let reply = describe(&sequence, Some(imported))?;
         self.replace(sequence);
         Ok(reply)
     }

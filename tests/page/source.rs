@@ -2,6 +2,9 @@
 
 use crate::harness::{Backend, Page, Screen, glb};
 use crate::opening::SETTLED;
+use sinew::import::Up;
+use sinew::sequence::Pose;
+use sinew::zoo::{self, Recipe};
 
 fn a_dropped_file_is_painted(backend: Backend) {
     let mut page = Page::open(backend, Screen::Still, "");
@@ -313,6 +316,87 @@ fn a_tour_gives_back_what_it_took_the_place_of() {
     assert_eq!(page.evaluate(asks), true, "points that were placed by hand are not left without a question");
     page.evaluate("sinew.app.target.close()");
     assert_eq!(page.evaluate(asks), false);
+}
+
+/// The first poses of a person who walks, as OBJ files in which z is up.
+fn lying_poses(faces: usize, count: usize) -> Vec<String> {
+    let recipe = Recipe { name: "person".into(), faces, poses: 6, ..Recipe::default() };
+    let sequence = zoo::make(&recipe).expect("there is a person").sequence;
+    let faces: String =
+        sequence.faces().iter().map(|f| format!("f {} {} {}\n", f[0] + 1, f[1] + 1, f[2] + 1)).collect();
+    let lowered = |&p: &glam::DVec3| Up::Z.lowered(p);
+    let vertex = |p: glam::DVec3| format!("v {} {} {}\n", p.x, p.y, p.z);
+    let written = |pose: &Pose| pose.positions.iter().map(lowered).map(vertex).collect::<String>() + &faces;
+    sequence.poses().iter().take(count).map(written).collect()
+}
+
+/// How high the source and the target are, each over how far it goes away from the viewer.
+const HEIGHTS: &str = "[sinew.app.sequence, sinew.app.target.sequence].map(({ reference }) => {
+    const [, high, deep] = [0, 1, 2].map((axis) => { const along = reference.filter((_, i) => i % 3 === axis);
+        return Math.max(...along) - Math.min(...along); });
+    return high / deep; })";
+
+#[test]
+#[ignore = "drives the built page in Chromium: run by `cargo xtask test`"]
+fn who_lies_is_raised_and_nothing_is_lost() {
+    let mut page = Page::open(Backend::WebGl2, Screen::Still, "#v1;zoo=snake;faces=3000;k.points=5");
+    page.wait_until(SETTLED, 30.0);
+    assert_eq!(page.evaluate("document.querySelectorAll('.corner select').length"), 0, "creatures stand");
+    let poses = lying_poses(2000, 3);
+    page.drop_files(&[
+        ("w1.obj", poses[0].as_bytes()),
+        ("w2.obj", poses[1].as_bytes()),
+        ("w3.obj", poses[2].as_bytes()),
+    ]);
+    page.wait_until(&format!("sinew.state().source.name.startsWith('w') && {STILL}"), 30.0);
+    page.evaluate("void sinew.app.parts.setCount(4)");
+    page.evaluate("sinew.app.setStep('target')");
+    page.wait_until(&format!("sinew.state().points === 5 && {STILL}"), 60.0);
+    page.drop_files(&[("other.obj", lying_poses(1400, 1)[0].as_bytes())]);
+    page.wait_until(&format!("sinew.state().moves && sinew.state().tally.proposed === 5 && {STILL}"), 60.0);
+    page.evaluate("sinew.app.target.acceptAll()");
+    page.wait_until(&format!("sinew.state().tally.placed === 5 && {STILL}"), 60.0);
+    let ratios = |page: &mut Page| {
+        let found = page.evaluate(HEIGHTS);
+        [0, 1].map(|i| found[i].as_f64().unwrap_or(0.0))
+    };
+    let (before, places, lying) = (page.state(), page.evaluate(PLACES), ratios(&mut page));
+    assert!(lying.iter().all(|&ratio| ratio < 0.7), "they lie on their backs: {lying:?}");
+    page.screenshot("lying");
+    // The source by itself, the target by the keyboard.
+    let choose = "(list, axis) => { list.value = axis; list.dispatchEvent(new Event('change')); }";
+    page.evaluate(&format!("({choose})(document.querySelector('#picture-up-source'), 'z')"));
+    page.wait_until(&format!("sinew.app.sequence.up === 'z' && sinew.state().moves && {STILL}"), 60.0);
+    let half = ratios(&mut page);
+    assert!(half[0] > 1.4 && half[1] < 0.7, "only the source stands: {half:?}");
+    page.evaluate("document.querySelector('#picture-up-target').focus()");
+    page.press("z");
+    page.wait_until(&format!("sinew.app.target.sequence.up === 'z' && sinew.state().moves && {STILL}"), 60.0);
+    let upright = ratios(&mut page);
+    assert!(upright.iter().all(|&ratio| ratio > 1.4), "{upright:?}");
+    assert_eq!(page.evaluate("document.activeElement.id"), "picture-up-target");
+    page.screenshot("upright");
+    let after = page.state();
+    assert_eq!(page.evaluate(PLACES), places);
+    for what in ["source", "target", "parts", "points", "tally", "step", "error"] {
+        assert_eq!(after[what], before[what], "{what}");
+    }
+    let errors = [&before, &after].map(|state| state["pointError"].as_f64().unwrap_or(0.0));
+    assert!((errors[0] - errors[1]).abs() < 1e-6, "{errors:?}");
+    // A project takes it along, and so does a link to files of another site.
+    let kept = "Promise.all(['link', 'project'].map((name) => import(new URL(`www/${name}.js`, location.href)))).then(
+        async ([{ writeLink, readLink, optionsOf }, { writeProject, readProject }]) => {
+            const blob = await writeProject(sinew.app, sinew.app.timeline);
+            const { source, target } = await readProject([{ name: 'p.glb', blob }]);
+            const link = readLink(writeLink(sinew.app, sinew.app.timeline, { own: true }));
+            return [source.options.up, target.options.up, link['import.up'], optionsOf(link, sinew.app.about).up].join(); })";
+    assert_eq!(page.evaluate_within(kept, 30.0), "z,z,z,z");
+    // Undo lays both down again, one after the other.
+    page.evaluate("sinew.app.undo()");
+    page.wait_until(&format!("sinew.app.target.sequence.up === 'y' && sinew.state().moves && {STILL}"), 60.0);
+    page.evaluate("sinew.app.undo()");
+    page.wait_until(&format!("sinew.app.sequence.up === 'y' && sinew.state().moves && {STILL}"), 60.0);
+    assert_eq!((page.evaluate(PLACES), ratios(&mut page)), (places, lying));
 }
 
 #[test]

@@ -2,9 +2,10 @@
 import { choice, facts, fold, select, toggle } from '../controls.js';
 import { doctor, untold, worthALook } from '../doctor.js';
 import { h, show } from '../dom.js';
-import { chosen } from '../files.js';
+import { chosen, isGltf } from '../files.js';
 import { count, duration, number, plural, title } from '../format.js';
 import { lesson } from '../lesson.js';
+import { upright } from '../upright.js';
 import { gallery as pairGallery } from './gallery.js';
 import { warnings } from './warnings.js';
 
@@ -42,7 +43,7 @@ function build(app) {
         ['Diagonal', number(sequence.diagonal), 'Of the bounding box of the reference pose, in the units of the file'],
       ]),
       ...warnings(app, untold(sequence.warnings)),
-      source.kind === 'zoo' ? creatureOptions(app) : isGltf(app) && animationOptions(app));
+      source.kind === 'zoo' ? creatureOptions(app) : isGltf(app) && animationOptions(app), upright(app, 'source', 'step'));
     health.update();
     show(gallery, choice('Creature', app.about.creatures.map((name) => [name, title(name)]),
       source.kind === 'zoo' ? source.recipe.name : null, (name) => app.opener.openCreature({ name })));
@@ -97,7 +98,3 @@ function animationOptions(app) {
 /** A creature has a name, a file its own. */
 const nameOf = ({ source, sequence }) =>
   (source.kind === 'zoo' ? title(sequence.name) : sequence.name.replace(/\.(glb|gltf|obj|off|ply|stl|zip)$/i, ''));
-
-/** Also in an archive: only glTF has clips. */
-const isGltf = ({ source: { files }, sequence }) =>
-  sequence.clips.length > 0 || files?.some(({ name }) => /\.(glb|gltf)$/i.test(name));

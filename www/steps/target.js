@@ -5,6 +5,7 @@ import { h, show } from '../dom.js';
 import { chosen } from '../files.js';
 import { count, title } from '../format.js';
 import { lesson } from '../lesson.js';
+import { upright } from '../upright.js';
 import { pairGallery } from './gallery.js';
 import { pointList } from './point-list.js';
 import { PAIR_VIEWS } from './point-views.js';
@@ -44,7 +45,8 @@ function build(app) {
         h('div', { class: 'row' }, h('p', { class: 'name' }, nameOf(app.target)),
           h('button', { type: 'button', class: 'text-button', id: 'target-away', on: { click: () => app.target.close() } }, 'Put away')),
         facts([['Vertices', count(sequence.sizes.vertices)], ['Faces', count(sequence.sizes.faces)]]),
-        ...warnings(app, untold(sequence.warnings).filter(({ code }) => code !== 'no-animation'), app.second));
+        ...warnings(app, untold(sequence.warnings).filter(({ code }) => code !== 'no-animation'), app.second),
+        upright(app, 'target', 'step'));
     }
     const { placed, proposed, missing } = app.target.tally;
     tally.textContent = [placed && `${placed} placed`, proposed && `${proposed} proposed`, missing && `${missing} missing`].filter(Boolean).join(' · ');

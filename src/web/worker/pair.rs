@@ -21,7 +21,7 @@ impl Engine {
         let options: Options = parsed(options)?;
         let imported = import::open(&read_files(files)?, &options).map_err(sentence)?;
         let sequence = rounded(&imported.sequence)?;
-        let reply = describe(&sequence, &imported.clips, imported.clip, &imported.warnings)?;
+        let reply = describe(&sequence, Some(&imported))?;
         self.replace_target(Some(sequence));
         Ok(reply)
     }
@@ -29,7 +29,7 @@ impl Engine {
     /// Makes a creature as the target; as [`Engine::zoo`].
     pub fn target_zoo(&mut self, recipe: JsValue) -> Reply {
         let sequence = rounded(&creature(recipe)?.sequence)?;
-        let reply = describe(&sequence, &[], None, &[])?;
+        let reply = describe(&sequence, None)?;
         self.replace_target(Some(sequence));
         Ok(reply)
     }

@@ -1,7 +1,7 @@
 //! Sequences on their way to the page and back.
 
 use super::values::{Reply, coordinates, field, parsed, plain, points, put, read_files, sentence, triples};
-use crate::import::{self, Clip, Options};
+use crate::import::{self, Clip, Imported, Options, Up};
 use crate::look::Look;
 use crate::mesh::doctor::{Diagnosis, Finding};
 use crate::sequence::{Pose, Sequence, Sizes};
@@ -18,6 +18,7 @@ struct Opened<'a> {
     pose_names: Vec<&'a str>,
     sizes: Sizes,
     diagonal: f64,
+    up: Option<Up>,
     clips: &'a [Clip],
     clip: Option<usize>,
     warnings: &'a [Warning],
@@ -46,14 +47,17 @@ pub fn rounded(sequence: &Sequence) -> Result<Sequence, JsValue> {
     }
 }
 
-pub fn describe(sequence: &Sequence, clips: &[Clip], clip: Option<usize>, warnings: &[Warning]) -> Reply {
+/// A sequence for the page, and what its files say of it, if it comes from files.
+pub fn describe(sequence: &Sequence, imported: Option<&Imported>) -> Reply {
+    let warnings = imported.map_or(&[][..], |imported| &imported.warnings);
     let reply = plain(&Opened {
         name: sequence.name(),
         pose_names: sequence.poses().iter().map(|pose| pose.name.as_str()).collect(),
         sizes: sequence.sizes(),
         diagonal: sequence.diagonal(),
-        clips,
-        clip,
+        up: imported.map(|imported| imported.up),
+        clips: imported.map_or(&[], |imported| &imported.clips),
+        clip: imported.and_then(|imported| imported.clip),
         warnings,
     })?;
     put_arrays(&reply, sequence)?;
