@@ -51,9 +51,17 @@ export function slider({ id: own, label, symbol = '', help, low, high, step, pap
 
 const paperText = ([from, to], reading) => (from === to ? reading(from) : `${reading(from)} to ${reading(to)}`);
 
-/** A drop-down list. `options` are `[value, label]`, `props` those of the list. */
+/**
+ * A drop-down list. `options` are `[value, label]`, `props` those of the list. Where `change` promises false, nothing came of
+ * it: the list shows what holds.
+ */
 export function select(label, options, chosen, change, { id = idOf(label), ...props } = {}) {
-  const list = h('select', { id, ...props, on: { change: () => change(list.value) } },
+  const list = h('select', { id, ...props, on: {
+    change: async () => {
+      const { value } = list;
+      if ((await change(value)) === false && list.value === value) list.value = chosen;
+    },
+  } },
     ...options.map(([value, text]) => h('option', { value, selected: value === chosen }, text)));
   return h('div', { class: 'row' }, h('label', { for: id }, label), list);
 }

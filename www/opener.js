@@ -62,7 +62,7 @@ export class Opener {
     return this.#open('open', source, () => collect(files, source.options), how);
   }
 
-  /** Turns the figure, so that another axis of its files is up. All that was done with it stays. */
+  /** Turns the figure, so that another axis of its files is up. All that was done with it stays, and what is looked at. */
   turn(up) {
     return this.reopen({ up }, { turned: true });
   }
@@ -103,8 +103,13 @@ export class Opener {
     if (turned) {
       // Errors and weights are the same either way up; the maps of a fit are not, and are found again.
       const run = before.run && { ...before.run, rounds: null };
+      const { places, face, selected, timeline } = app;
+      const { moment } = timeline;
       app.edit({ open, run, points: unproposed(before.points) });
       this.#makeRoom();
+      Object.assign(app, { places, face });
+      app.select(selected);
+      timeline.moment = moment;
       return;
     }
     // A target stays: what is new is to move it as well. So do points in which there is work, where they mean the same.

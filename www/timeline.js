@@ -40,6 +40,17 @@ export class Timeline {
     return Math.max(0, this.app.sequence?.loop ? this.poses : this.poses - 1);
   }
 
+  /** What is shown of the motion, to be set again when the same motion was opened anew. */
+  get moment() {
+    const { time, reference, playing } = this;
+    return { time, reference, playing };
+  }
+
+  set moment(moment) {
+    Object.assign(this, moment);
+    this.#show();
+  }
+
   toggle() {
     this.setPlaying(!this.playing);
   }

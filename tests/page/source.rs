@@ -356,6 +356,7 @@ fn who_lies_is_raised_and_nothing_is_lost() {
     page.wait_until(&format!("sinew.state().moves && sinew.state().tally.proposed === 5 && {STILL}"), 60.0);
     page.evaluate("sinew.app.target.acceptAll()");
     page.wait_until(&format!("sinew.state().tally.placed === 5 && {STILL}"), 60.0);
+    page.evaluate("sinew.app.timeline.setPlaying(false), sinew.app.timeline.seek(1), sinew.app.select(2)");
     let ratios = |page: &mut Page| {
         let found = page.evaluate(HEIGHTS);
         [0, 1].map(|i| found[i].as_f64().unwrap_or(0.0))
@@ -378,7 +379,7 @@ fn who_lies_is_raised_and_nothing_is_lost() {
     page.screenshot("upright");
     let after = page.state();
     assert_eq!(page.evaluate(PLACES), places);
-    for what in ["source", "target", "parts", "points", "tally", "step", "error"] {
+    for what in ["source", "target", "parts", "points", "tally", "selected", "time", "step", "error"] {
         assert_eq!(after[what], before[what], "{what}");
     }
     let errors = [&before, &after].map(|state| state["pointError"].as_f64().unwrap_or(0.0));
