@@ -303,7 +303,7 @@ fn figures_are_raised_and_poses_are_written_as_the_target_lies() {
     let last = &raised.poses().last().unwrap().positions;
     let height = last.iter().map(|p| p.y).fold(0.0, f64::max) - last.iter().map(|p| p.y).fold(0.0, f64::min);
     assert!((height - 1.0).abs() < 1e-6, "other programs see it upright, {height} high");
-    let report = json(&sinew(&folder, &["inspect", "rest.obj", "--up", "-x", "--json"]).stdout);
+    let report = json(&sinew(&folder, &["inspect", "rest.obj", "--up", "-X", "--json"]).stdout);
     assert_eq!(report["up"], "-x");
     let output = sinew(&folder, &["inspect", "rest.obj", "--up", "w"]);
     assert_eq!(output.status.code(), Some(2));

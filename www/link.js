@@ -8,6 +8,7 @@ import { STEPS } from './steps/index.js';
 import { METHODS } from './steps/methods.js';
 import { isValid } from './steps/parameters.js';
 import { isValidSearch } from './steps/search-parameters.js';
+import { AXES } from './upright.js';
 
 const VERSION = 'v1';
 /** Browsers limit how often the address may be replaced, in milliseconds. */
@@ -115,6 +116,7 @@ export function optionsOf(fields, { options }) {
     const text = fields[`import.${name}`];
     if (text !== undefined) wanted[name] = parse(text, text);
   }
+  if (!AXES.includes(wanted.up)) delete wanted.up;
   return wanted;
 }
 

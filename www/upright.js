@@ -2,7 +2,7 @@
 import { select } from './controls.js';
 
 /** As the engine calls them. */
-const AXES = ['y', 'z', 'x', '-y', '-z', '-x'];
+export const AXES = ['y', 'z', 'x', '-y', '-z', '-x'];
 
 /**
  * The choice of that axis.

@@ -50,7 +50,7 @@ pub struct Target {
 
 /// An axis by its name.
 fn axis(name: &str) -> Result<Up, serde_json::Error> {
-    serde_json::from_value(name.into())
+    serde_json::from_value(name.to_lowercase().into())
 }
 
 #[derive(Clone, Copy, ValueEnum)]
