@@ -3,7 +3,6 @@
 use super::rig::weights::{LEAST, Row, normalised};
 use super::surface::Surface;
 use crate::linalg::cholesky::Cholesky;
-use std::collections::BTreeSet;
 
 /// Edges shorter than this, in radii, count as so long: slivers tie no more than others.
 const SHORT: f64 = 2e-3;
@@ -63,6 +62,8 @@ fn grown(surface: &Surface, lost: &[bool]) -> (Vec<u32>, Vec<Option<u32>>) {
 /// The bones, in order, of what is not lost next to a region.
 fn beside(surface: &Surface, rows: &[Row], lost: &[bool], region: &[u32]) -> Vec<u32> {
     let around = region.iter().flat_map(|&v| surface.neighbours(v as usize)).filter(|&&u| !lost[u as usize]);
-    let bones: BTreeSet<u32> = around.flat_map(|&u| rows[u as usize].iter().map(|entry| entry.0)).collect();
-    bones.into_iter().collect()
+    let mut bones: Vec<u32> = around.flat_map(|&u| rows[u as usize].iter().map(|entry| entry.0)).collect();
+    bones.sort_unstable();
+    bones.dedup();
+    bones
 }

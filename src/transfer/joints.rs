@@ -128,7 +128,7 @@ fn join_loose(source: &Surface, rig: &Rig, bones: &[(DVec3, DVec3, f64)], links:
         let tree =
             tree.get_or_insert_with(|| KdTree::new(&source.positions.iter().map(DVec3::to_array).collect::<Vec<_>>()));
         let found = vertices.iter().step_by(vertices.len().div_ceil(ASKED)).filter_map(|&v| {
-            let u = tree.nearest(&source.positions[v as usize].to_array(), elsewhere)?;
+            let u = tree.nearest_of(&source.positions[v as usize].to_array(), elsewhere)?;
             Some((source.positions[v as usize].distance_squared(source.positions[u as usize]), v, u))
         });
         let Some((_, v, u)) = found.min_by(|a, b| a.0.total_cmp(&b.0)) else { return };

@@ -32,8 +32,13 @@ impl<const D: usize> KdTree<D> {
         Self { points: numbers.iter().map(|&i| points[i as usize]).collect(), numbers }
     }
 
+    /// The number of the nearest point; `None` if there is none.
+    pub fn nearest(&self, to: &[f64; D]) -> Option<u32> {
+        self.nearest_of(to, |_| true)
+    }
+
     /// The number of the nearest point that is `wanted`; `None` if there is none.
-    pub fn nearest(&self, to: &[f64; D], wanted: impl Fn(u32) -> bool) -> Option<u32> {
+    pub fn nearest_of(&self, to: &[f64; D], wanted: impl Fn(u32) -> bool) -> Option<u32> {
         let mut search = Search { tree: self, to, wanted, apart: [0.0; D], best: f64::INFINITY, found: None };
         search.part(0, self.points.len(), 0, 0.0);
         search.found
@@ -102,9 +107,9 @@ mod tests {
             let distance = |i: u32| points[i as usize].iter().zip(&to).map(|(a, b)| (a - b) * (a - b)).sum::<f64>();
             let odd = |i: u32| i % 2 == 1;
             let expected = (0..300).filter(|&i| odd(i)).min_by(|&a, &b| distance(a).total_cmp(&distance(b)));
-            assert_eq!(tree.nearest(&to, odd), expected);
+            assert_eq!(tree.nearest_of(&to, odd), expected);
         }
-        assert_eq!(tree.nearest(&[0.0; 4], |_| false), None);
-        assert_eq!(KdTree::<2>::new(&[]).nearest(&[0.0; 2], |_| true), None);
+        assert_eq!(tree.nearest_of(&[0.0; 4], |_| false), None);
+        assert_eq!(KdTree::<2>::new(&[]).nearest(&[0.0; 2]), None);
     }
 }

@@ -106,7 +106,7 @@ impl<'a> Body<'a> {
     /// For each place of a piece the place beneath it, if the piece is a layer.
     fn beneath(&self, piece: &[u32]) -> Option<Vec<u32>> {
         let at = |v: u32| self.surface.positions[v as usize];
-        let below = |&v: &u32| Some(self.places[self.tree.nearest(&at(v).to_array(), |_| true)? as usize]);
+        let below = |&v: &u32| Some(self.places[self.tree.nearest(&at(v).to_array())? as usize]);
         let beneath: Vec<u32> = piece.iter().map(below).collect::<Option<_>>()?;
         let (mut sum, mut mass) = (0.0, 0.0);
         for (&v, &u) in piece.iter().zip(&beneath) {

@@ -54,7 +54,7 @@ impl Ground {
     /// The nearest place on the source to a point with a normal, seen from the nearest vertex; `None` for a surface
     /// without faces.
     pub fn foot(&self, surface: &Surface, point: DVec3, normal: DVec3) -> Option<(Foot, DVec3, u32)> {
-        let vertex = self.tree.nearest(&key(point, normal), |_| true)?;
+        let vertex = self.tree.nearest(&key(point, normal))?;
         let at = |f: u32| {
             let corners = surface.faces[f as usize].map(|v| surface.positions[v as usize]);
             let shares = nearest_in_triangle(point, corners);
@@ -209,7 +209,7 @@ impl Owners {
 
     /// Whether a place of the source may be that of a vertex of the target.
     fn allow(&self, target: &Surface, vertex: usize, place: DVec3) -> bool {
-        let nearest = self.tree.nearest(&place.to_array(), |_| true).and_then(|number| self.pins.get(number as usize));
+        let nearest = self.tree.nearest(&place.to_array()).and_then(|number| self.pins.get(number as usize));
         nearest.is_none_or(|pin| {
             let apart = target.positions[vertex].distance(target.positions[pin.vertex as usize]);
             apart < ELSEWHERE + STEEP * place.distance(pin.point)

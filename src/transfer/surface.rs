@@ -185,7 +185,7 @@ impl Surface {
         for (v, &given) in reference.iter().enumerate() {
             if self.place[v] == u32::MAX {
                 let at = self.inward(given).clamp(DVec3::splat(-1e6), DVec3::splat(1e6));
-                self.place[v] = tree.nearest(&at.to_array(), |_| true).unwrap_or(0);
+                self.place[v] = tree.nearest(&at.to_array()).unwrap_or(0);
             }
         }
     }

@@ -55,8 +55,8 @@ pub struct Transfer {
     /// Write parameters, seconds, errors and warnings as JSON
     #[arg(long, value_name = "FILE.json")]
     report: Option<PathBuf>,
-    /// The target's true poses in its own axes, to measure the result against: files, or a folder of files in natural order (glTF and STL:
-    /// with --no-weld, for points that meet in one pose only would be joined)
+    /// The target's true poses in its own axes, to measure the result against: files, or a folder of files in natural order
+    /// (glTF and STL: with --no-weld, for points that meet in one pose only would be joined)
     #[arg(long, value_name = "FILE", num_args = 1..)]
     truth: Vec<PathBuf>,
     /// Transfer by every method and write how far each is from the truth

@@ -97,7 +97,7 @@ impl<'a> Found<'a> {
         let to = key(point, normal);
         let mut near: Vec<u32> = Vec::with_capacity(NEAR);
         while near.len() < NEAR {
-            let Some(sample) = self.tree.nearest(&to, |s| !near.contains(&s)) else { break };
+            let Some(sample) = self.tree.nearest_of(&to, |s| !near.contains(&s)) else { break };
             near.push(sample);
         }
         let cost = |v: u32| {

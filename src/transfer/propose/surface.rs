@@ -11,7 +11,6 @@ use super::paths::{Graph, Paths};
 use crate::mesh::doctor::outward;
 use crate::mesh::weld::weld;
 use glam::DVec3;
-use std::cmp::Reverse;
 use std::collections::BinaryHeap;
 
 /// Samples of a surface; more cost memory and time by their square.
@@ -200,7 +199,7 @@ fn farthest(graph: &Graph, points: &[DVec3], used: &[u32], count: usize) -> (Vec
         let d = |v: u32| points[v as usize].distance_squared(middle);
         d(a).total_cmp(&d(b)).then(b.cmp(&a))
     });
-    let mut waiting = used.iter().map(|&v| (f64::INFINITY.to_bits(), Reverse(v))).collect();
+    let mut waiting = used.iter().map(|&v| (f64::INFINITY.to_bits(), !v)).collect();
     let mut next = first;
     while let Some(sample) = next {
         paths.add(graph, sample, samples.len() as u32);
@@ -213,17 +212,16 @@ fn farthest(graph: &Graph, points: &[DVec3], used: &[u32], count: usize) -> (Vec
     (samples, paths)
 }
 
-/// The vertex that is farthest, the first of equals; `None` if all distances are zero. `waiting` has the distances (their
-/// bits are ordered as they are) from before some became shorter, and is brought up to date as far as it matters.
-fn farthest_now(waiting: &mut BinaryHeap<(u64, Reverse<u32>)>, distance: &[f64]) -> Option<u32> {
+/// The vertex that is farthest, the first of equals; `None` if all distances are zero. `waiting` has the bits of distances,
+/// which are ordered as these are, from before some became shorter, and vertices upside down, so that the first is largest.
+fn farthest_now(waiting: &mut BinaryHeap<(u64, u32)>, distance: &[f64]) -> Option<u32> {
     loop {
-        let mut top = waiting.peek_mut()?;
-        let Reverse(v) = top.1;
-        let now = distance[v as usize].to_bits();
-        if top.0 == now {
-            return (now > 0).then_some(v);
+        let (then, reversed) = waiting.pop()?;
+        let now = distance[!reversed as usize].to_bits();
+        if now == then {
+            return (now > 0).then_some(!reversed);
         }
-        top.0 = now;
+        waiting.push((now, reversed));
     }
 }
 
