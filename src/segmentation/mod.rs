@@ -37,7 +37,7 @@ mod parameters;
 mod refinement;
 mod result;
 mod segmenter;
-mod shortest_paths;
+pub(crate) mod shortest_paths;
 mod smoothing;
 mod statistics;
 

@@ -2,10 +2,14 @@
 //!
 //! Sumner & Popović 2004, §5: each triangle of either mesh is paired with the nearest of the other whose normal is less than
 //! 90° off, so that a triangle may have several partners, and every triangle of the target has one.
+//!
+//! Beyond the paper, where nothing of the source is near, a triangle takes the partner of the nearest along the surface that
+//! has one near it: a tail that the source has not moves with what it grows from, not with the legs beside it.
 
 use super::fit::{face_normals, normals_at};
 use crate::mesh::bvh::Bvh;
-use crate::mesh::face;
+use crate::mesh::{DualGraph, face};
+use crate::segmentation::shortest_paths::{NONE, ShortestPaths};
 use crate::transfer::surface::Surface;
 use glam::DVec3;
 use serde::Serialize;
@@ -49,7 +53,10 @@ impl Correspondence {
         let tree = Bvh::new(&source.faces, bent);
         let areas = face::areas(&target.faces, &target.positions);
         let mut quality = Quality::default();
-        for (g, middle) in face::centroids(&target.faces, &target.positions).into_iter().enumerate() {
+        let middles = face::centroids(&target.faces, &target.positions);
+        let mut partners = vec![None; target.faces.len()];
+        let mut covered = Vec::new();
+        for (g, &middle) in middles.iter().enumerate() {
             let faces_alike = |f: u32| own[f as usize].dot(other[g]) > 0.0;
             let usable = |f: u32| sound[f as usize];
             let Some(nearest) = tree.nearest(middle, usable) else { continue };
@@ -59,10 +66,16 @@ impl Correspondence {
             } else {
                 nearest
             };
-            pairs.push([g as u32, hit.face]);
+            partners[g] = Some(hit.face);
             quality.distance += areas[g] * hit.squared.sqrt();
-            quality.coverage += if hit.squared <= NEAR * NEAR && faces_alike(hit.face) { areas[g] } else { 0.0 };
             quality.flipped += if flipped { areas[g] } else { 0.0 };
+            if hit.squared <= NEAR * NEAR && faces_alike(hit.face) {
+                quality.coverage += areas[g];
+                covered.push(g as u32);
+            }
+        }
+        for (g, holder) in (0..).zip(holders(target, &middles, &covered)) {
+            pairs.extend(partners[holder as usize].map(|f| [g, f]));
         }
         let total = areas.iter().sum::<f64>().max(f64::MIN_POSITIVE);
         quality.coverage /= total;
@@ -72,4 +85,13 @@ impl Correspondence {
         pairs.dedup();
         Self { pairs, quality }
     }
+}
+
+/// For each face the nearest along the surface that is `covered`, itself if there is none in reach.
+fn holders(target: &Surface, middles: &[DVec3], covered: &[u32]) -> Vec<u32> {
+    let graph = DualGraph::new(&target.faces);
+    let length = |[a, b]: [u32; 2]| middles[a as usize].distance(middles[b as usize]);
+    let lengths: Vec<f64> = graph.edges().iter().map(|edge| length(edge.faces)).collect();
+    let nearest = ShortestPaths::from_sources(&graph, &lengths, covered.iter().map(|&g| (g, g))).label;
+    (0..).zip(nearest).map(|(g, holder)| if holder == NONE { g } else { holder }).collect()
 }
