@@ -52,6 +52,11 @@ impl Extent {
         Ball { centre: self.centre(), radius: (0.5 * self.low.distance(self.high)).max(1e-6) }
     }
 
+    /// The box around this one and another.
+    pub fn and(&self, other: &Self) -> Self {
+        Self { low: self.low.min(other.low), high: self.high.max(other.high) }
+    }
+
     /// The box a share `t` of the way to `other`.
     pub fn towards(&self, other: &Self, t: f32) -> Self {
         Self { low: self.low.lerp(other.low, t), high: self.high.lerp(other.high, t) }

@@ -18,6 +18,9 @@ use glam::Vec3;
 /// turns with the camera, as if the figure stood on a turntable.
 const KEY: Vec3 = Vec3::new(-0.55, 1.0, 0.7);
 
+/// So many times as large as without, what is seen may become for the reference to be seen whole as well.
+const WITH_REFERENCE: f32 = 1.3;
+
 /// Everything that a picture is made of.
 #[derive(Clone, Debug)]
 pub struct Stage {
@@ -374,11 +377,17 @@ impl Stage {
         }
     }
 
-    /// Moves the camera so that the whole motion fits into the free part of the window.
+    /// Moves the camera so that the whole motion fits into the free part of the window, and the reference with it where that
+    /// takes little more room: far away it would make the motion small.
     pub fn frame_all(&mut self) {
         let reference = self.moment().to == 0;
         let centre = self.whole().centre();
-        self.camera.frame(&self.window, self.motion.sample(reference).into_iter(), centre);
+        let mut points = self.motion.sample(reference);
+        let [rest, motion] = self.whole;
+        if !reference && motion.and(&rest).ball().radius <= WITH_REFERENCE * motion.ball().radius {
+            points.extend(self.motion.sample(true));
+        }
+        self.camera.frame(&self.window, points.into_iter(), centre);
         self.redraw();
     }
 
@@ -543,6 +552,21 @@ mod tests {
             assert_eq!(hit.face, 3);
             assert!(hit.point.distance(middle) < 1e-3);
             assert_eq!(stage.pick(1.0, 1.0), None);
+        }
+    }
+
+    #[test]
+    fn a_reference_that_is_a_little_taller_is_framed_with_the_motion() {
+        for (height, seen) in [(1.2_f32, true), (9.0, false)] {
+            let mut stage = stage();
+            let corners = |y: f32| [0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, y, 0.0, 0.0, 0.0, 1.0];
+            let mut motion = Motion::new(&[0, 2, 1, 0, 1, 3, 0, 3, 2, 1, 2, 3], &corners(height)).unwrap();
+            motion.set_poses(&corners(1.0)).unwrap();
+            stage.set_motion(motion);
+            stage.set_time(0.0);
+            stage.frame_all();
+            let top = stage.frame().view.project_point3(Vec3::Y * height);
+            assert_eq!(top.y.abs() < 1.0, seen, "{top}");
         }
     }
 
