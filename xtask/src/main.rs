@@ -5,6 +5,7 @@
 #![allow(clippy::disallowed_types, reason = "runs natively only")]
 
 mod bench;
+mod beside;
 mod bundle;
 mod dist;
 mod serve;

@@ -29,6 +29,18 @@ pub fn cargo<'a>(arguments: impl IntoIterator<Item = &'a str>) -> Command {
     command
 }
 
+/// The same command with the lowest priority, where there are priorities to choose from: what else runs hardly feels it.
+pub fn in_idle_time(command: Command) -> Command {
+    if !cfg!(unix) {
+        return command;
+    }
+    let mut nice = program("nice");
+    nice.args(["-n", "19"]).arg(command.get_program()).args(command.get_args());
+    let set = command.get_envs().filter_map(|(name, value)| Some((name, value?)));
+    nice.envs(set);
+    nice
+}
+
 /// Runs to the end; anything but success is an error that names what ran.
 pub fn run(mut command: Command) -> Result<()> {
     let mut child = start(&mut command)?;

@@ -1,8 +1,10 @@
 //! `cargo xtask test`: everything that must hold, one step after the other, up to the first that fails.
 //!
 //! The order is by how soon a step can fail. What steps compile is shared as far as it goes: lints and documentation
-//! use the same metadata, the browser's wasm tests the same dependencies as `build --dev`.
+//! use the same metadata, the browser's wasm tests the same dependencies as `build --dev`. The native tests run beside what
+//! follows them, with what it leaves of the machine: the page's tests wait a good deal.
 
+use crate::beside::Beside;
 use crate::server::Server;
 use crate::setup::{self, WASM};
 use crate::{bundle, shell};
@@ -35,17 +37,21 @@ const SEED: &str = "PROPTEST_RNG_SEED";
 const PLAYERS: &str = "players::";
 
 /// A step: what it is called, and what it does. A step with tests says how many; any other counts as one.
-type Step = (&'static str, fn() -> Result<Tally>);
+type Step = (&'static str, fn(&mut Native) -> Result<Tally>);
 
-const STEPS: [Step; 8] = [
-    ("format", format),
-    ("lints, native", lint_native),
-    ("lints, wasm32", lint_wasm),
-    ("documentation", document),
-    ("tests, native", test_native),
-    ("tests as wasm, in a page and in a worker", test_wasm),
-    ("build of the page", build),
-    ("the page in Chromium, on WebGPU and on WebGL2", test_page),
+/// The native tests while they run.
+type Native = Option<Beside<Tally>>;
+
+const STEPS: [Step; 9] = [
+    ("format", |_| format()),
+    ("lints, native", |_| lint_native()),
+    ("lints, wasm32", |_| lint_wasm()),
+    ("documentation", |_| document()),
+    ("tests, native: built, and started", start_native),
+    ("tests as wasm, in a page and in a worker", |_| test_wasm()),
+    ("build of the page", |_| build()),
+    ("the page in Chromium, on WebGPU and on WebGL2", |_| test_page()),
+    ("tests, native: the rest", end_native),
 ];
 
 /// Runs all the steps, prints how long each took, and ends with one line of numbers.
@@ -56,11 +62,11 @@ pub fn test() -> Result<()> {
     setup::browser()?;
     let mut total = Tally::default();
     let mut times = Vec::new();
-    let mut failure = None;
+    let (mut failure, mut native) = (None, None);
     for (number, (name, step)) in STEPS.iter().enumerate() {
         println!("\n== {} of {}: {name}", number + 1, STEPS.len());
         let begin = Instant::now();
-        let result = step();
+        let result = step(&mut native);
         times.push((name, begin.elapsed().as_secs_f64(), result.is_ok()));
         match result {
             Ok(tally) => total.add(tally),
@@ -70,6 +76,11 @@ pub fn test() -> Result<()> {
                 break;
             }
         }
+    }
+    if native.is_some() {
+        println!("\nwhat the native tests found meanwhile:");
+        let tally = |error: &anyhow::Error| error.downcast_ref().map_or(Tally::default(), |Failed(tally)| *tally);
+        total.add(end_native(&mut native).unwrap_or_else(|error| tally(&error)));
     }
     println!();
     for (name, seconds, passed) in &times {
@@ -131,18 +142,38 @@ fn document() -> Result<Tally> {
     check(cargo)
 }
 
-fn test_native() -> Result<Tally> {
+/// Builds the native tests, and starts them beside the steps that follow.
+fn start_native(native: &mut Native) -> Result<Tally> {
     if !Path::new("../shared/data").is_dir() {
         println!("left out: comparisons with public data and other programs' values, which lie beside the checkout");
     }
-    let mut cargo = shell::cargo(["test", "--no-fail-fast"]);
-    if std::env::var_os(SEED).is_none() {
-        // The same cases every time, so that a failure is about the change at hand; plain `cargo test` looks further.
-        cargo.env(SEED, "2006");
+    let packages: [&[&str]; 2] = [&["test", "--no-fail-fast"], &["test", "--no-fail-fast", "--package", "xtask"]];
+    let cargo = |arguments: &[&'static str]| {
+        let mut cargo = shell::cargo(arguments.iter().copied());
+        if std::env::var_os(SEED).is_none() {
+            // The same cases every time, so that a failure is about the change at hand; plain `cargo test` looks further.
+            cargo.env(SEED, "2006");
+        }
+        cargo
+    };
+    for arguments in packages {
+        let mut building = cargo(arguments);
+        building.arg("--no-run");
+        shell::run(building)?;
     }
-    let mut tally = count(cargo)?;
-    tally.add(count(shell::cargo(["test", "--no-fail-fast", "--package", "xtask"]))?);
-    Ok(tally)
+    *native = Some(Beside::start(move |out| {
+        let mut tally = Tally::default();
+        for arguments in packages {
+            tally.add(count_to(out, shell::in_idle_time(cargo(arguments)))?);
+        }
+        Ok(tally)
+    }));
+    Ok(Tally { passed: 1, ..Tally::default() })
+}
+
+/// Waits for the native tests, and shows what they print.
+fn end_native(native: &mut Native) -> Result<Tally> {
+    native.take().map_or_else(|| Ok(Tally::default()), Beside::end)
 }
 
 fn test_wasm() -> Result<Tally> {
@@ -186,14 +217,18 @@ fn test_page() -> Result<Tally> {
 }
 
 /// Runs tests, shows what they print as they print it, and counts.
-fn count(mut command: Command) -> Result<Tally> {
+fn count(command: Command) -> Result<Tally> {
+    count_to(&mut std::io::stdout(), command)
+}
+
+/// The same, with what they print written to `out`.
+fn count_to(out: &mut dyn Write, mut command: Command) -> Result<Tally> {
     let line = shell::line(&command);
     let mut child = command.stdout(Stdio::piped()).spawn().with_context(|| format!("`{line}` cannot be started"))?;
     let mut tally = Tally::default();
     if let Some(output) = child.stdout.take() {
         for text in BufReader::new(output).split(b'\n') {
             let text = text?;
-            let mut out = std::io::stdout().lock();
             out.write_all(&text)?;
             out.write_all(b"\n")?;
             if let Some(found) = result_line(&String::from_utf8_lossy(&text)) {
