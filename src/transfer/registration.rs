@@ -23,10 +23,11 @@ const AGREE: f64 = 0.3;
 /// What lies farther from the source than this, in its radii, after the first rounds of growth has no twin there.
 pub const LOST: f64 = 0.08;
 const ROUGH: usize = 2;
-/// A vertex of the target is not drawn to places of the source that belong to others: by what is known of the nearest, it
-/// lies farther away than this, and than that is from there so many times.
-const ELSEWHERE: f64 = 0.35;
-const STEEP: f64 = 3.0;
+/// A place of the source belongs to what is known to lie nearest to it, and to what on the target is no farther from that
+/// than this, in radii,
+const NEAR: f64 = 0.35;
+/// and so many times the way from it to the place: proportions differ.
+const STRETCH: f64 = 3.0;
 /// Cotangents are kept above this: obtuse triangles do not push.
 const LEAST_COTANGENT: f64 = 0.01;
 
@@ -84,8 +85,8 @@ pub struct Pin {
 pub struct Known<'a> {
     /// What is held there.
     pub pins: &'a [Pin],
-    /// What is thought to lie near there: a tail that the source has not, so that its legs are what is nearest, is not
-    /// drawn to these if it is known whose they are.
+    /// What is thought to lie near there. Either tells whose the places of the source are: a tail that the source has not is
+    /// not drawn to the legs, though these are what lies nearest to it.
     pub hints: &'a [Pin],
 }
 
@@ -212,7 +213,7 @@ impl Owners {
         let nearest = self.tree.nearest(&place.to_array()).and_then(|number| self.pins.get(number as usize));
         nearest.is_none_or(|pin| {
             let apart = target.positions[vertex].distance(target.positions[pin.vertex as usize]);
-            apart < ELSEWHERE + STEEP * place.distance(pin.point)
+            apart < NEAR + STRETCH * place.distance(pin.point)
         })
     }
 }
