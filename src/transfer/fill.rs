@@ -1,11 +1,9 @@
 //! Weights where the source has nothing like the target: a tail, a hump or a hat follows what it grows from.
 
+use super::mend::SHORT;
 use super::rig::weights::{LEAST, Row, normalised};
 use super::surface::Surface;
 use crate::linalg::cholesky::Cholesky;
-
-/// Edges shorter than this, in radii, count as so long: slivers tie no more than others.
-const SHORT: f64 = 2e-3;
 
 /// Gives `lost` vertices weights that are harmonic along the surface between those of the others; pieces that are lost
 /// altogether keep theirs.

@@ -24,7 +24,7 @@ const WIDTH: f64 = 1.0;
 /// A piece is small if its box is not longer than this, in radii.
 pub const SMALL: f64 = 0.1;
 /// Edges shorter than this, in radii, count as so long: slivers tell nothing.
-const SHORT: f64 = 2e-3;
+pub const SHORT: f64 = 2e-3;
 
 /// By how much edges of a moving surface may become longer on another that follows it.
 pub fn allowed(surface: &Surface, poses: &[&[DVec3]]) -> f64 {
