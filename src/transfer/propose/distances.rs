@@ -1,5 +1,5 @@
 //! Distances between all nodes of a graph, of which only those that are asked for are worked out: points that look for
-//! their places try a third of a surface's samples.
+//! their places try about half of a surface's samples.
 
 use super::paths::{Graph, Paths};
 use std::sync::OnceLock;
