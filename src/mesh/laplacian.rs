@@ -11,7 +11,8 @@
 
 use glam::DVec3;
 
-/// By how much of the mean edge length two sides of a triangle together must exceed the third.
+/// By how much of the mean edge length two sides of a triangle together must exceed the third; and of the third, so that
+/// a long triangle cannot have cotangents beyond what sums hold beside those of the others.
 const SLACK: f64 = 1e-5;
 
 /// The matrices of a mesh: L, with `cotangents` off the diagonal and rows that sum to zero, and the diagonal M.
@@ -38,7 +39,7 @@ impl Laplacian {
         let mut result = Self { mass: vec![0.0; positions.len()], ..Self::default() };
         let mut shares = Vec::with_capacity(3 * whole.len());
         for (face, &given) in whole.iter().zip(&lengths) {
-            let sides = mollified(given, SLACK * mean);
+            let sides = mollified(given, mean);
             result.mollified += usize::from(sides != given);
             let Some((cotangents, areas)) = triangle(sides) else { continue };
             for corner in 0..3 {
@@ -62,9 +63,10 @@ fn lengths([a, b, c]: [DVec3; 3]) -> [f64; 3] {
     [b.distance(c), c.distance(a), a.distance(b)]
 }
 
-/// The sides, longer by what they lack for the two shorter ones to exceed the longest by `slack`.
-fn mollified(sides: [f64; 3], slack: f64) -> [f64; 3] {
+/// The sides, longer by what they lack for the two shorter ones to exceed the longest; `mean` is that of the mesh.
+fn mollified(sides: [f64; 3], mean: f64) -> [f64; 3] {
     let longest = sides.iter().copied().fold(0.0, f64::max);
+    let slack = SLACK * mean.max(longest);
     let excess = sides.iter().sum::<f64>() - 2.0 * longest;
     if excess >= slack { sides } else { sides.map(|side| side + (slack - excess)) }
 }
@@ -127,6 +129,21 @@ mod tests {
         assert!(at_centre.length() < 1e-14);
         let area = 2.5 * (std::f64::consts::TAU / 5.0).sin();
         assert!((found.mass.iter().sum::<f64>() - area).abs() < 1e-14);
+    }
+
+    #[test]
+    fn long_slivers_among_small_triangles_have_bounded_cotangents() {
+        // Among a thousand small triangles lies one 600 times as long and a tenth as wide: cotangents of 3000.
+        let corners = |i: u32| [DVec3::ZERO, DVec3::X, DVec3::Y].map(|p| p + f64::from(i) * DVec3::Z);
+        let mut positions: Vec<DVec3> = (0..1000).flat_map(corners).collect();
+        positions.push(DVec3::new(301.0, 0.1, 0.0));
+        positions.push(DVec3::new(601.0, 0.0, 0.0));
+        let mut faces: Vec<[u32; 3]> = (0..1000).map(|i| [3 * i, 3 * i + 1, 3 * i + 2]).collect();
+        faces.push([1, 3001, 3000]);
+        let found = Laplacian::new(&faces, &positions);
+        assert_eq!(found.mollified, 1);
+        let largest = found.cotangents.iter().fold(0.0, |most: f64, c| most.max(c.abs()));
+        assert!((100.0..1000.0).contains(&largest), "{largest}");
     }
 
     #[test]
