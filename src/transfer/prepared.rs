@@ -25,11 +25,11 @@ use crate::weights::{self, Biharmonic, Weights};
 use glam::{DAffine3, DVec3};
 use std::sync::Arc;
 
-/// Rounds in which weights on a target of [`SMOOTHED`] vertices are averaged with their neighbours', and the most rounds on
-/// finer ones.
-const SMOOTHING: usize = 5;
-const SMOOTHED: usize = 3000;
-const MOST_SMOOTHING: usize = 24;
+/// Rounds in which weights on a target of [`SMOOTHED`] vertices are averaged with their neighbours', in proportion on
+/// others: about as far on all of them. Finer ones have so many at most.
+const SMOOTHING: f64 = 5.0;
+const SMOOTHED: f64 = 3000.0;
+const MOST_SMOOTHING: f64 = 24.0;
 /// While a point is dragged, every so manieth pose is looked at for tears.
 const FEWER: usize = 3;
 /// Bones that a vertex of the target may follow.
@@ -237,7 +237,7 @@ impl Prepared {
         let mut rows: Vec<Row> = feet.iter().map(|foot| self.pulled(foot.map(|f| f.0))).collect();
         let lost: Vec<bool> = feet.iter().map(|foot| foot.is_none_or(|f| f.1 > LOST)).collect();
         fill(&self.target, &mut rows, &lost);
-        let rounds = (SMOOTHING * self.target.len()).div_ceil(SMOOTHED).clamp(2, MOST_SMOOTHING);
+        let rounds = (SMOOTHING * self.target.len() as f64 / SMOOTHED).min(MOST_SMOOTHING);
         rows = averaged(&self.target, rows, INFLUENCES, rounds);
         let (here, there) = self.pieces(pairs);
         let feet: Vec<Option<Foot>> = feet.iter().map(|foot| foot.map(|f| f.0)).collect();

@@ -15,7 +15,9 @@ const HOLD: f64 = 0.01;
 /// Rounds, each holding weights to the neighbours' of the round before.
 const ROUNDS: usize = 3;
 /// Rounds of averaging that turn the hard bones into the first weights.
-const SOFTEN: usize = 4;
+const SOFTEN: f64 = 4.0;
+/// What share the neighbours have in an average.
+const BESIDE: f64 = 0.5;
 /// Shares below this are dropped.
 pub const LEAST: f64 = 1e-4;
 
@@ -25,7 +27,7 @@ pub fn bind(surface: &Surface, poses: &[&[DVec3]], bones: &Bones) -> Vec<Row> {
     let mut rows = averaged(surface, hard, CANDIDATES, SOFTEN);
     let reach = reach(surface, bones);
     for _ in 0..ROUNDS {
-        let held = averaged(surface, rows, 2 * CANDIDATES, 1);
+        let held = averaged(surface, rows, 2 * CANDIDATES, 1.0);
         rows = (0..surface.len()).map(|v| vertex(surface, poses, bones, &reach, v, &held[v])).collect();
     }
     rows
@@ -103,34 +105,44 @@ fn simplex(gram: &[[f64; CANDIDATES]], pull: &[f64]) -> Vec<f64> {
     w
 }
 
-/// Rows half their own, half their neighbours' mean, some rounds over; at most `most` entries each.
-pub fn averaged(surface: &Surface, rows: Vec<Row>, most: usize, rounds: usize) -> Vec<Row> {
+/// Rows half their own, half their neighbours' mean, some rounds over; at most `most` entries each. In a part of a round
+/// neighbours have that part of their share.
+pub fn averaged(surface: &Surface, rows: Vec<Row>, most: usize, rounds: f64) -> Vec<Row> {
     let (mut rows, mut next) = (rows, vec![Row::new(); surface.len()]);
-    let mut averager = Averager::default();
-    for _ in 0..rounds {
+    let mut left = rounds;
+    while left > 0.0 {
+        let mut averager = Averager { beside: BESIDE * left.min(1.0), ..Averager::default() };
         for (v, row) in next.iter_mut().enumerate() {
             averager.average(surface, &rows, v, most, row);
         }
         std::mem::swap(&mut rows, &mut next);
+        left -= 1.0;
     }
     rows
 }
 
 /// Averages rows, one after another.
-#[derive(Default)]
 pub struct Averager {
+    /// What share the neighbours have.
+    beside: f64,
     sum: Row,
     /// Where each bone stands in the sum, if that bone stands there.
     places: Vec<usize>,
 }
 
+impl Default for Averager {
+    fn default() -> Self {
+        Self { beside: BESIDE, sum: Row::new(), places: Vec::new() }
+    }
+}
+
 impl Averager {
     /// Makes `average` one of the rows of [`averaged`], after one round.
     pub fn average(&mut self, surface: &Surface, rows: &[Row], v: usize, most: usize, average: &mut Row) {
-        let beside = surface.neighbours(v);
+        let neighbours = surface.neighbours(v);
         self.sum.clear();
-        self.add(&rows[v], if beside.is_empty() { 1.0 } else { 0.5 });
-        beside.iter().for_each(|&u| self.add(&rows[u as usize], 0.5 / beside.len() as f64));
+        self.add(&rows[v], if neighbours.is_empty() { 1.0 } else { 1.0 - self.beside });
+        neighbours.iter().for_each(|&u| self.add(&rows[u as usize], self.beside / neighbours.len() as f64));
         self.sum.retain(|s| s.1 > LEAST);
         self.sum.sort_unstable_by(|a, b| b.1.total_cmp(&a.1).then(a.0.cmp(&b.0)));
         self.sum.truncate(most);
