@@ -27,7 +27,7 @@ use std::sync::Arc;
 
 /// Rounds in which weights on a target of [`SMOOTHED`] vertices are averaged with their neighbours', in proportion on
 /// others: about as far on all of them. Finer ones have so many at most.
-const SMOOTHING: f64 = 5.0;
+const SMOOTHING: f64 = 3.0;
 const SMOOTHED: f64 = 3000.0;
 const MOST_SMOOTHING: f64 = 24.0;
 /// While a point is dragged, every so manieth pose is looked at for tears.
