@@ -60,9 +60,10 @@ struct Mesh<'a> {
     stamp: Vec<u32>,
 }
 
-/// Collapses until about `target` vertices with faces are left. `keep` is #V: what must stay.
+/// Collapses until about `target` vertices with faces are left. `keep` is #V: what must stay. Of faces between the same
+/// vertices, as in two-sided leaves, one is taken.
 pub fn decimate(faces: &[[u32; 3]], points: &[DVec3], keep: &[bool], target: usize) -> Coarse {
-    let mut mesh = Mesh::new(faces, points);
+    let mut mesh = Mesh::new(&distinct(faces), points);
     let mut onto: Vec<u32> = (0..points.len() as u32).collect();
     let mut left = mesh.around.iter().filter(|f| !f.is_empty()).count();
     let mut heap = BinaryHeap::new();
@@ -93,6 +94,19 @@ pub fn decimate(faces: &[[u32; 3]], points: &[DVec3], keep: &[bool], target: usi
     }
     let faces = mesh.faces.iter().zip(&mesh.alive).filter(|(_, alive)| **alive).map(|(face, _)| *face).collect();
     Coarse { faces, onto }
+}
+
+/// The faces without those whose corners another one has, in any order.
+fn distinct(faces: &[[u32; 3]]) -> Vec<[u32; 3]> {
+    let sorted = |mut face: [u32; 3]| {
+        face.sort_unstable();
+        face
+    };
+    let mut numbers: Vec<usize> = (0..faces.len()).collect();
+    numbers.sort_by_key(|&f| sorted(faces[f]));
+    numbers.dedup_by_key(|f| sorted(faces[*f]));
+    numbers.sort_unstable();
+    numbers.into_iter().map(|f| faces[f]).collect()
 }
 
 impl<'a> Mesh<'a> {
@@ -168,8 +182,7 @@ impl<'a> Mesh<'a> {
         let common = of_v.iter().filter(|w| of_u.binary_search(w).is_ok()).count();
         // An edge inside between two vertices of the boundary would pinch the surface.
         let pinches = opposite.len() == 2 && self.on_boundary(v, &of_v);
-        let is_edge = matches!(opposite.len(), 1 | 2);
-        if !is_edge || common != opposite.len() || pinches {
+        if opposite.is_empty() || common != opposite.len() || pinches {
             return false;
         }
         // Nobody may be left without a face.
@@ -226,5 +239,42 @@ impl<'a> Mesh<'a> {
         let quadric = self.quadrics[v as usize];
         self.quadrics[u as usize].add(&quadric);
         self.stamp[v as usize] += 1;
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A square of `n` × `n` squares in the plane, and its points.
+    fn sheet(n: u32) -> (Vec<[u32; 3]>, Vec<DVec3>) {
+        let at = |i: u32, j: u32| i * (n + 1) + j;
+        let points = (0..=n).flat_map(|i| (0..=n).map(move |j| DVec3::new(f64::from(i), f64::from(j), 0.0))).collect();
+        let square = |i, j| [[at(i, j), at(i + 1, j), at(i + 1, j + 1)], [at(i, j), at(i + 1, j + 1), at(i, j + 1)]];
+        ((0..n).flat_map(|i| (0..n).flat_map(move |j| square(i, j))).collect(), points)
+    }
+
+    fn left(faces: &[[u32; 3]], points: &[DVec3], target: usize) -> usize {
+        let mut kept = decimate(faces, points, &vec![false; points.len()], target).faces.concat();
+        kept.sort_unstable();
+        kept.dedup();
+        kept.len()
+    }
+
+    #[test]
+    fn two_sided_and_non_manifold_meshes_thin_out_as_well() {
+        let (faces, points) = sheet(20);
+        assert_eq!(left(&faces, &points, 50), 50);
+        let back = faces.iter().map(|&[a, b, c]| [c, b, a]);
+        let doubled: Vec<[u32; 3]> = faces.iter().copied().chain(back).collect();
+        assert_eq!(left(&doubled, &points, 50), 50);
+        // A second sheet stands on the middle line of the first: edges of four faces.
+        let offset = points.len() as u32;
+        let standing = points.iter().map(|p| DVec3::new(10.0, p.y, p.x - 10.0));
+        let both: Vec<DVec3> = points.iter().copied().chain(standing).collect();
+        let on_line = |v: u32| if both[v as usize].z == 0.0 && v >= offset { 10 * 21 + (v - offset) % 21 } else { v };
+        let crossed = faces.iter().map(|face| face.map(|v| on_line(v + offset)));
+        let crossed: Vec<[u32; 3]> = faces.iter().copied().chain(crossed).collect();
+        assert!(left(&crossed, &both, 100) <= 110);
     }
 }

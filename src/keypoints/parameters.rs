@@ -14,7 +14,7 @@ pub struct Parameters {
     pub error: f64,
     /// Exactly so many points; `None`: until `stop` says so.
     pub points: Option<usize>,
-    /// The most points in any case.
+    /// The most points, unless their number is given.
     pub max: usize,
     /// When to stop.
     pub stop: Stop,

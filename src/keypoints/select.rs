@@ -62,7 +62,7 @@ pub async fn select_by(
     let choice = if surface.poses.is_empty() {
         let message = "the mesh has no other pose: its points are spread evenly over the surface";
         warnings.push(Warning::new("still-mesh", message));
-        let count = parameters.points.unwrap_or(STILL).min(parameters.max);
+        let count = parameters.points.unwrap_or(STILL.min(parameters.max));
         let points: Vec<u32> = names.iter().take(count).copied().collect();
         let end =
             Measured { errors: vec![0.0; points.len()], weights: full.weights(crew, &points, None).await?, points };

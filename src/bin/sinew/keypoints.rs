@@ -23,7 +23,7 @@ pub struct KeyPointsCommand {
     /// ε, the mean vertex distance in the unit sphere at which there are points enough (paper: 0.03)
     #[arg(long)]
     error: Option<f64>,
-    /// The most points
+    /// The most points, unless --points says how many
     #[arg(long, value_parser = clap::value_parser!(u32).range(1..))]
     max: Option<u32>,
     /// Exactly so many points
