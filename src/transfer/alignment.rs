@@ -12,6 +12,8 @@ const PAIRS: usize = 4;
 const ANGLE: f64 = 0.94;
 /// and if without it pairs lie so much farther apart.
 const WORSE: f64 = 1.5;
+/// Pairs of which every two are compared in size; of more some are, evenly.
+const COMPARED: usize = 300;
 
 /// `x ↦ size · turn · x + shift`, from the source to the target.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -49,6 +51,7 @@ pub fn align(pairs: &[(DVec3, DVec3)]) -> Alignment {
 
 /// The median ratio of distances. Few pairs say little of the size: then more is left to the unit balls.
 fn size(pairs: &[(DVec3, DVec3)]) -> f64 {
+    let pairs: Vec<&(DVec3, DVec3)> = pairs.iter().step_by(pairs.len().div_ceil(COMPARED).max(1)).collect();
     let mut ratios = Vec::new();
     for (i, a) in pairs.iter().enumerate() {
         for b in &pairs[i + 1..] {

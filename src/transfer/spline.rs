@@ -6,6 +6,11 @@
 use glam::DVec3;
 use nalgebra::DMatrix;
 
+/// Added on the diagonal, in lengths.
+const RIDGE: f64 = 1e-3;
+/// Points that take part: the system is dense.
+const MOST: usize = 500;
+
 /// Displacements known at some points, and between them.
 pub struct Spline {
     points: Vec<DVec3>,
@@ -14,13 +19,15 @@ pub struct Spline {
 }
 
 impl Spline {
-    /// Interpolates displacements at points that differ; near repetitions are met in the mean.
+    /// Interpolates displacements at points that differ; near repetitions are met in the mean. Of more than [`MOST`] points
+    /// some are met, evenly.
     pub fn new(known: &[(DVec3, DVec3)]) -> Self {
         Self::loose(known, RIDGE)
     }
 
     /// Displacements that are not exact are smoothed over: the more, the larger `ridge`, a length.
     pub fn loose(known: &[(DVec3, DVec3)], ridge: f64) -> Self {
+        let known: Vec<&(DVec3, DVec3)> = known.iter().step_by(known.len().div_ceil(MOST).max(1)).collect();
         let n = known.len();
         let points: Vec<DVec3> = known.iter().map(|k| k.0).collect();
         let constant = known.iter().map(|k| k.1).sum::<DVec3>() / n.max(1) as f64;
@@ -51,9 +58,6 @@ impl Spline {
         self.constant - self.points.iter().zip(&self.kernels).map(|(p, k)| *k * p.distance(x)).sum::<DVec3>()
     }
 }
-
-/// Added on the diagonal, in lengths.
-const RIDGE: f64 = 1e-3;
 
 #[cfg(test)]
 mod tests {

@@ -55,11 +55,13 @@ fn normalise(row: &mut [f64]) -> bool {
 }
 
 fn take_nearest(surface: &Surface, known: &[bool], rows: &mut [f64], count: usize) {
-    let tree = KdTree::new(&surface.positions);
+    let givers: Vec<usize> = (0..known.len()).filter(|&v| known[v]).collect();
+    let places: Vec<DVec3> = givers.iter().map(|&v| surface.positions[v]).collect();
+    let tree = KdTree::new(&places);
     for v in (0..known.len()).filter(|&v| !known[v]) {
-        let wanted = |u: u32| known[u as usize];
-        if let Some((_, u)) = tree.nearest(surface.positions[v], f64::INFINITY, &wanted) {
-            rows.copy_within(u as usize * count..(u as usize + 1) * count, v * count);
+        if let Some((_, nearest)) = tree.nearest(surface.positions[v], f64::INFINITY, &|_| true) {
+            let from = givers[nearest as usize] * count;
+            rows.copy_within(from..from + count, v * count);
         }
     }
 }
