@@ -9,12 +9,18 @@ use super::coarse;
 use super::distances::Distances;
 use super::paths::{Graph, Paths};
 use crate::mesh::doctor::outward;
+use crate::mesh::face::{self, nearest_in_triangle};
+use crate::mesh::pieces::pieces;
 use crate::mesh::weld::weld;
+use crate::transfer::kd_tree::KdTree;
 use glam::DVec3;
 use std::collections::BinaryHeap;
 
 /// Samples of a surface; more cost memory and time by their square.
 pub const SAMPLES: usize = 1200;
+
+/// What share of the area of a surface in very many pieces is sampled.
+const COVERED: f64 = 0.8;
 
 /// Samples over whose mean distance sizes are compared.
 const FIRST: usize = 100;
@@ -64,8 +70,9 @@ impl Surface {
         let stands = weld(&[&points], 1e-7);
         let welded: Vec<[u32; 3]> = sound(&outward(faces, &points), &stands);
         let used = used(&welded, &stands, diagonal);
+        let heard = of_large_pieces(&welded, &points, &used, samples.max(2) / 2);
         let fine = Graph::new(points.len(), &coarse::edges(&welded, &points));
-        let (samples, mut paths) = farthest(&fine, &points, &used, samples.max(1));
+        let (samples, mut paths) = farthest(&fine, &points, &heard, samples.max(1));
         reach_all(&mut paths, &stands, &samples, &points);
         let cell = paths.label;
         let places: Vec<DVec3> = samples.iter().map(|&v| points[v as usize]).collect();
@@ -190,6 +197,31 @@ fn used(faces: &[[u32; 3]], stands: &[u32], diagonal: f64) -> Vec<u32> {
     (0..stands.len() as u32).filter(|&v| used[v as usize] && stands[v as usize] == v).collect()
 }
 
+/// Those of the vertices that count as samples: of a surface in more than `most` pieces, such as a body with thousands of
+/// hairs, those on the largest pieces, which make up [`COVERED`] of it, and no more than `most` of them. Every piece gets a
+/// sample before any gets another, and none would be left for the body.
+fn of_large_pieces(faces: &[[u32; 3]], points: &[DVec3], used: &[u32], most: usize) -> Vec<u32> {
+    let pieces = pieces(faces, points.len());
+    if pieces.count <= most {
+        return used.to_vec();
+    }
+    let mut areas: Vec<(f64, usize)> = (0..pieces.count).map(|piece| (0.0, piece)).collect();
+    for (&piece, area) in pieces.face.iter().zip(face::areas(faces, points)) {
+        areas[piece as usize].0 += area;
+    }
+    areas.sort_by(|a, b| b.0.total_cmp(&a.0).then(a.1.cmp(&b.1)));
+    let mut left = COVERED * areas.iter().map(|piece| piece.0).sum::<f64>();
+    let mut large = vec![false; pieces.count];
+    for &(area, piece) in &areas[..most] {
+        large[piece] = left >= 0.0;
+        left -= area;
+    }
+    let mut heard = vec![false; points.len()];
+    let of_large = faces.iter().zip(&pieces.face).filter(|(_, piece)| large[**piece as usize]);
+    of_large.flat_map(|(corners, _)| corners).for_each(|&v| heard[v as usize] = true);
+    used.iter().copied().filter(|&v| heard[v as usize]).collect()
+}
+
 /// Farthest point sampling among `used`, from the vertex farthest from the middle; with the cells.
 fn farthest(graph: &Graph, points: &[DVec3], used: &[u32], count: usize) -> (Vec<u32>, Paths) {
     let mut paths = Paths::new(graph);
@@ -227,18 +259,15 @@ fn farthest_now(waiting: &mut BinaryHeap<(u64, u32)>, distance: &[f64]) -> Optio
 
 /// Vertices without a sample in reach join the nearest as the crow flies; welded vertices the one that stands for them.
 fn reach_all(paths: &mut Paths, stands: &[u32], samples: &[u32], points: &[DVec3]) {
+    let places: Vec<[f64; 3]> = samples.iter().map(|&v| points[v as usize].to_array()).collect();
+    let tree = KdTree::new(&places);
     for v in 0..stands.len() {
         if paths.label[v] != u32::MAX {
             continue;
         }
         let stand = paths.label[stands[v] as usize];
-        paths.label[v] = if stand != u32::MAX { stand } else { nearest(samples, points, points[v]) };
+        paths.label[v] = if stand != u32::MAX { stand } else { tree.nearest(&points[v].to_array()).unwrap_or(0) };
     }
-}
-
-fn nearest(samples: &[u32], points: &[DVec3], to: DVec3) -> u32 {
-    let d = |i: &u32| points[samples[*i as usize] as usize].distance_squared(to);
-    (0..samples.len() as u32).min_by(|a, b| d(a).total_cmp(&d(b))).unwrap_or(0)
 }
 
 /// Normals of the vertices and of the cells.
@@ -273,7 +302,7 @@ fn readings(points: &[DVec3], cell: &[u32], coarse: &[[u32; 3]], places: &[DVec3
         let alone = (places[own as usize].distance_squared(p), [(own, 1.0), (own, 0.0), (own, 0.0)]);
         let on = |&number: &usize| {
             let corners = coarse[number];
-            let weights = nearest_on_triangle(p, corners.map(|s| places[s as usize]));
+            let weights = nearest_in_triangle(p, corners.map(|s| places[s as usize]));
             let at: DVec3 = corners.iter().zip(weights).map(|(&s, w)| w * places[s as usize]).sum();
             let reading: Reading = std::array::from_fn(|k| (corners[k], weights[k] as f32));
             (at.distance_squared(p), reading)
@@ -284,40 +313,25 @@ fn readings(points: &[DVec3], cell: &[u32], coarse: &[[u32; 3]], places: &[DVec3
     points.iter().zip(cell).map(reading).collect()
 }
 
-/// Barycentric weights of the point of a triangle that is nearest to `p` (C. Ericson, *Real-Time Collision Detection*,
-/// 2005, section 5.1.5).
-fn nearest_on_triangle(p: DVec3, [a, b, c]: [DVec3; 3]) -> [f64; 3] {
-    let (ab, ac, ap) = (b - a, c - a, p - a);
-    let (d1, d2) = (ab.dot(ap), ac.dot(ap));
-    if d1 <= 0.0 && d2 <= 0.0 {
-        return [1.0, 0.0, 0.0];
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_body_with_thousands_of_hairs_is_sampled_itself() {
+        // A row of quads, and a thousand tiny triangles about it, first in the file.
+        let hair =
+            |i: u32| [0.0, 0.01, 0.02].map(|x| DVec3::new(x + f64::from(i % 20), x * x + 0.1, f64::from(i / 20)));
+        let mut points: Vec<DVec3> = (0..1000).flat_map(hair).collect();
+        let mut faces: Vec<[u32; 3]> = (0..1000).map(|i| [3 * i, 3 * i + 1, 3 * i + 2]).collect();
+        let first = points.len() as u32;
+        for i in 0..200 {
+            points.extend([DVec3::new(0.1 * f64::from(i), 0.0, -1.0), DVec3::new(0.1 * f64::from(i), 0.0, 5.0)]);
+        }
+        faces.extend((0..398).map(|i| [first + i, first + i + 1, first + i + 2]));
+        let surface = Surface::new(&faces, &points, 100).expect("a surface");
+        assert_eq!(surface.len(), 100);
+        assert!(surface.samples.iter().all(|&v| v >= first));
+        assert!(surface.cell.iter().all(|&cell| cell < 100));
     }
-    let bp = p - b;
-    let (d3, d4) = (ab.dot(bp), ac.dot(bp));
-    if d3 >= 0.0 && d4 <= d3 {
-        return [0.0, 1.0, 0.0];
-    }
-    let cp = p - c;
-    let (d5, d6) = (ab.dot(cp), ac.dot(cp));
-    if d6 >= 0.0 && d5 <= d6 {
-        return [0.0, 0.0, 1.0];
-    }
-    let share = |part: f64, whole: f64| if whole > 0.0 { (part / whole).clamp(0.0, 1.0) } else { 0.0 };
-    let vc = d1 * d4 - d3 * d2;
-    if vc <= 0.0 && d1 >= 0.0 && d3 <= 0.0 {
-        let v = share(d1, d1 - d3);
-        return [1.0 - v, v, 0.0];
-    }
-    let vb = d5 * d2 - d1 * d6;
-    if vb <= 0.0 && d2 >= 0.0 && d6 <= 0.0 {
-        let w = share(d2, d2 - d6);
-        return [1.0 - w, 0.0, w];
-    }
-    let va = d3 * d6 - d5 * d4;
-    if va <= 0.0 && d4 >= d3 && d5 >= d6 {
-        let w = share(d4 - d3, (d4 - d3) + (d5 - d6));
-        return [0.0, 1.0 - w, w];
-    }
-    let sum = va + vb + vc;
-    if sum > 0.0 { [va / sum, vb / sum, vc / sum] } else { [1.0, 0.0, 0.0] }
 }
