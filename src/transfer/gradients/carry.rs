@@ -11,7 +11,7 @@ use glam::{DMat3, DVec3};
 
 /// Poses by which faces are judged that do not fit in with those around them.
 const JUDGED: usize = 12;
-/// The weight of a face that the source moves, over that of one which nothing moves.
+/// The least weight of a face without a partner, over that of one with a partner; and of one without area, over the mean.
 const LEAST: f64 = 1e-3;
 
 /// A source in motion, a target, and which of their faces correspond.
@@ -68,21 +68,20 @@ fn maps(scene: &Scene, of_source: &[Option<DMat3>]) -> Vec<DMat3> {
 /// The target's poses: for each, #N positions in its unit ball.
 pub fn carry(scene: &Scene) -> Result<Vec<Vec<DVec3>>, NotPositiveDefinite> {
     let own = gradients(scene.source);
-    let maps: Vec<Vec<DMat3>> =
-        scene.poses.iter().map(|pose| maps(scene, &deformations(scene.source, &own, pose))).collect();
+    let maps = |pose: &Vec<DVec3>| maps(scene, &deformations(scene.source, &own, pose));
     let weights = weights(scene);
     let mut solver = Solver::new(scene.target, &weights, scene.pins)?;
     let goals = pinned(scene);
     if scene.doubt > 0.0 {
-        let few: Vec<usize> = (0..maps.len()).step_by(maps.len().div_ceil(JUDGED).max(1)).collect();
-        let some: Vec<Vec<DMat3>> = few.iter().map(|&i| maps[i].clone()).collect();
-        let their: Vec<Vec<DVec3>> = few.iter().filter_map(|&i| goals.get(i).cloned()).collect();
+        let every = scene.poses.len().div_ceil(JUDGED).max(1);
+        let some: Vec<Vec<DMat3>> = scene.poses.iter().step_by(every).map(maps).collect();
+        let their: Vec<Vec<DVec3>> = goals.iter().step_by(every).cloned().collect();
         let off = misfits(scene.target, &some, &solver.solve(&some, &their));
         let trusted: Vec<f64> =
             weights.iter().zip(&off).map(|(w, off)| w / (1.0 + (off / scene.doubt).powi(2))).collect();
         solver = Solver::new(scene.target, &trusted, scene.pins)?;
     }
-    let mut poses = solver.solve(&maps, &goals);
+    let mut poses = solver.solve(scene.poses.iter().map(maps), &goals);
     if goals.is_empty() {
         for (pose, of_source) in poses.iter_mut().zip(scene.poses) {
             settle(scene, of_source, pose);

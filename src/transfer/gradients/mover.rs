@@ -41,7 +41,7 @@ pub struct Mover {
 /// The source bent into the target.
 #[derive(Clone, Debug, Default)]
 pub struct Bent {
-    /// After each round #V positions of the source's vertices, in the target's own frame and scale. By [`Method::Posed`] of
+    /// At first and after each round #V positions of the source's vertices, in the target's own frame and scale. By [`Method::Posed`] of
     /// the last time that it was bent, into the target in the source's posture.
     pub shapes: Vec<Vec<DVec3>>,
     /// How well it covers the target.
@@ -177,7 +177,7 @@ impl Mover {
             ));
         }
         Ok(Moved {
-            poses: poses.iter().map(|pose| self.outward(&self.target, pose)).collect(),
+            poses: poses.into_iter().map(|pose| self.outward(&self.target, &pose)).collect(),
             bent: Bent {
                 shapes: shapes.iter().map(|shape| self.outward(&self.source, shape)).collect(),
                 quality: correspondence.quality,

@@ -102,23 +102,25 @@ impl Solver {
 
     /// #N positions for each pose: `maps` are #F linear maps a pose. `goals` are, for each pose, where the pins go; without
     /// pins the first vertex is at the origin.
-    pub fn solve(&self, maps: &[Vec<DMat3>], goals: &[Vec<DVec3>]) -> Vec<Vec<DVec3>> {
-        let mut poses = Vec::with_capacity(maps.len());
-        for (chunk, some) in maps.chunks(AT_ONCE).enumerate() {
-            let first = chunk * AT_ONCE;
-            let sides: Vec<Vec<DVec3>> =
-                some.iter().enumerate().map(|(i, maps)| self.side(maps, goals.get(first + i))).collect();
-            let mut columns = columns(&sides);
+    pub fn solve<M: AsRef<[DMat3]>>(&self, maps: impl IntoIterator<Item = M>, goals: &[Vec<DVec3>]) -> Vec<Vec<DVec3>> {
+        let mut poses = Vec::new();
+        // Maps take six times the room of positions: those of a pose go before the next come.
+        let mut sides = maps.into_iter().enumerate().map(|(pose, maps)| self.side(maps.as_ref(), goals.get(pose)));
+        loop {
+            let some: Vec<Vec<DVec3>> = sides.by_ref().take(AT_ONCE).collect();
+            if some.is_empty() {
+                return poses;
+            }
+            let mut columns = columns(&some);
             self.factor.solve(&mut columns);
             for i in 0..some.len() {
                 let mut points = self.equations.points(&columns, i);
-                if let Some(goals) = goals.get(first + i) {
+                if let Some(goals) = goals.get(poses.len()) {
                     self.correct(&mut points, goals);
                 }
                 poses.push(points);
             }
         }
-        poses
     }
 
     fn side(&self, maps: &[DMat3], goals: Option<&Vec<DVec3>>) -> Vec<DVec3> {
