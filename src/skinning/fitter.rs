@@ -78,7 +78,7 @@ pub struct Rig<'a> {
 pub struct Fit {
     /// One map a handle, in mesh units, from the reference to the pose.
     pub maps: Vec<DAffine3>,
-    /// The energy after each round, in unit-sphere units; it never rises.
+    /// The energy at first and after each round, in unit-sphere units; it never rises.
     pub energies: Vec<f64>,
     /// Mean vertex distance between blended vertices and the pose, in unit-sphere radii.
     pub error: f64,

@@ -21,6 +21,9 @@ const finestOf = ({ rounds }) => new Set(rounds.at(-1)).size;
 /** After how many merges there are as many parts as are shown. */
 const mergesNow = ({ result }) => (result ? Math.max(0, finestOf(result) - new Set(result.unsmoothed).size) : 0);
 
+/** How many labels are kept for walking to and fro; more are worked out again. */
+const MOST_KEPT = 8_000_000;
+
 const kept = new WeakMap();
 
 /** The same, once for each run and number. */
@@ -28,7 +31,7 @@ function mergedOf(result, count) {
   if (!kept.has(result)) kept.set(result, new Map());
   const known = kept.get(result);
   if (!known.has(count)) {
-    if (known.size > 400) known.clear();
+    if (known.size * result.labels.length > MOST_KEPT) known.clear();
     known.set(count, merged(result, count));
   }
   return known.get(count);

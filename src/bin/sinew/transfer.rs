@@ -70,7 +70,7 @@ pub struct Transfer {
 
 #[derive(Clone, Copy, PartialEq, ValueEnum)]
 enum MethodArgument {
-    /// By biharmonic weights
+    /// As a skin: of near-rigid bones, or of the key points by their biharmonic weights (see --variant)
     Biharmonic,
     /// What each face does, asked of the target's faces (Sumner & Popović 2004)
     Gradients,

@@ -1,10 +1,10 @@
 //! Messages about the target moved by its faces, and about any method beside another.
 
-use super::values::{Reply, coordinates, parsed, plain, put, sentence};
+use super::values::{Reply, coordinates, parsed, plain, put, read_pairs, sentence};
 use super::{Engine, watcher};
 use crate::memory::Step;
 use crate::transfer::gradients::Mover;
-use crate::transfer::{Pair, Parameters, Prepared};
+use crate::transfer::{Parameters, Prepared};
 use glam::DVec3;
 use js_sys::{Float32Array, Function, Object};
 use wasm_bindgen::prelude::*;
@@ -17,9 +17,10 @@ impl Engine {
         let parameters: Parameters = parsed(parameters)?;
         let mut observer = watcher(progress);
         (self.moved, self.faces_moved) = (None, None);
-        let mover = match self.mover.take() {
-            Some((made_with, mover)) if made_with == parameters => mover,
-            _ => {
+        let kept = self.mover.take().filter(|(made_with, _)| *made_with == parameters);
+        let mover = match kept {
+            Some((_, mover)) => mover,
+            None => {
                 self.room_for(Step::Faces(self.open_target()?.sizes()), self.open_sequence()?)?;
                 let proposer = Some(self.proposer()?);
                 let (source, target) = (self.open_sequence()?, self.open_target()?);
@@ -63,10 +64,6 @@ impl Engine {
         put(&reply, "positions", &table(&poses))?;
         Ok(reply)
     }
-}
-
-fn read_pairs(pairs: &[u32]) -> Vec<Pair> {
-    pairs.as_chunks().0.iter().map(|&[source, target]| Pair { source, target }).collect()
 }
 
 fn table(shapes: &[Vec<DVec3>]) -> Float32Array {

@@ -2,12 +2,12 @@
 
 use super::Engine;
 use super::sequences::{look, moving, written};
-use super::values::{Reply, parsed, plain, put, sentence};
+use super::values::{Reply, parsed, plain, put, read_pairs, sentence};
 use super::watcher;
 use crate::export::animation;
 use crate::export::skin::{self, Influences, SkinPose};
 use crate::memory::Step;
-use crate::transfer::{Pair, Parameters, Prepared};
+use crate::transfer::{Parameters, Prepared};
 use js_sys::{Array, Float32Array, Function, Object, Uint16Array};
 use wasm_bindgen::prelude::*;
 
@@ -20,14 +20,16 @@ impl Engine {
     /// [`Parameters`] are in their serde form. Starting from the last motion if `quick`, while a point is dragged.
     pub fn transfer(&mut self, pairs: &[u32], parameters: JsValue, quick: bool, progress: &Function) -> Reply {
         let parameters: Parameters = parsed(parameters)?;
-        let pairs: Vec<Pair> = pairs.as_chunks().0.iter().map(|&[source, target]| Pair { source, target }).collect();
+        let pairs = read_pairs(pairs);
         let mut observer = watcher(progress);
         self.moved = None;
         self.faces_moved = None;
         let mut preparing = Vec::new();
-        let mut prepared = match self.prepared.take() {
-            Some((made_with, prepared)) if made_with == parameters => prepared,
-            _ => {
+        // What is of no use any more goes before its successor comes.
+        let kept = self.prepared.take().filter(|(made_with, _)| *made_with == parameters);
+        let mut prepared = match kept {
+            Some((_, prepared)) => prepared,
+            None => {
                 self.room_for(Step::Transfer(self.open_target()?.sizes()), self.open_sequence()?)?;
                 let proposer = if parameters.method.by_bones() { Some(self.proposer()?) } else { None };
                 let (source, target) = (self.open_sequence()?, self.open_target()?);

@@ -1,6 +1,7 @@
 //! Plain objects of the page to values of the engine, and back.
 
 use crate::import::File;
+use crate::transfer::Pair;
 use glam::DVec3;
 use js_sys::{Array, Float32Array, Reflect, Uint8Array};
 use serde::Serialize;
@@ -32,6 +33,11 @@ pub fn points(coordinates: &[f32]) -> Vec<DVec3> {
 
 pub fn triples<T: Copy>(flat: &[T]) -> Vec<[T; 3]> {
     flat.as_chunks().0.to_vec()
+}
+
+/// Alternately vertices of the source and of the target.
+pub fn read_pairs(flat: &[u32]) -> Vec<Pair> {
+    flat.as_chunks().0.iter().map(|&[source, target]| Pair { source, target }).collect()
 }
 
 pub fn single(values: &[f64]) -> Float32Array {

@@ -18,10 +18,10 @@ pub struct Zoo {
     /// List the creatures, or the motions of the one that is named
     #[arg(long)]
     list: bool,
-    /// About how many faces
+    /// About how many faces, 1000 to 1000000
     #[arg(long)]
     faces: Option<usize>,
-    /// Poses in one loop of the motion
+    /// Poses in one loop of the motion, 1 to 240
     #[arg(long)]
     poses: Option<usize>,
     /// Every vertex follows exactly one bone
