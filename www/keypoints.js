@@ -85,10 +85,12 @@ export class KeyPoints {
     return (this.app.sequence?.sizes.poses ?? 0) > 0;
   }
 
-  /** Finds them if there are none. */
+  /** Finds them if there are none, or what follows from them if that was cancelled. */
   begin() {
     const { app } = this;
-    if (app.sequence && !app.opener.underWay && !app.doc.points.length && this.hasMotion && !this.searching) this.find();
+    if (!app.sequence || app.opener.underWay) return;
+    if (app.doc.points.length) this.fit();
+    else if (this.hasMotion && !this.searching) this.find();
   }
 
   /** Whether they are being looked for. */
@@ -245,7 +247,7 @@ export class KeyPoints {
   async #fit() {
     const { app } = this;
     const points = this.used.map(({ source }) => source);
-    if (!points.length) return;
+    if (!points.length || this.#current) return;
     const { run } = app.doc;
     const known = run?.rounds && this.untouched && points.length === run.key_points.length;
     const answer = known ? run : await app.work.run('points', 'weights', () => app.engine.call('fit', { points, parameters: this.parameters }));
