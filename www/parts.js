@@ -13,6 +13,17 @@ export class Parts {
     this.runs = 0;
   }
 
+  /** Whether the parts are being looked for, or what they are to be of. */
+  get searching() {
+    return this.app.opener.underWay > 0 || this.app.work.jobs.some(({ lane }) => lane === 'source');
+  }
+
+  /** Finds the parts if there are none, because that was cancelled. */
+  begin() {
+    const { app } = this;
+    if (app.sequence && !app.result && !this.searching) this.segment();
+  }
+
   /** Segments what is open with the parameters in force. */
   async segment() {
     const { app } = this;
@@ -84,7 +95,7 @@ export class Parts {
   exportRigid() {
     const { app } = this;
     const { result } = app;
-    if (!result || app.opener.underWay) return undefined;
+    if (!this.ready()) return undefined;
     return app.work.run('export rigid', 'writing the file', async () =>
       app.engine.call('export_rigid', { labels: result.labels, ...await originals(app.source) }));
   }
@@ -93,8 +104,15 @@ export class Parts {
   export() {
     const { app } = this;
     const { result, colours } = app;
-    if (!result || app.opener.underWay) return undefined;
+    if (!this.ready()) return undefined;
     return app.work.run('export', 'writing the file', () => app.engine.call('export', { labels: result.labels, colours }));
+  }
+
+  /** Whether there are parts to be taken away, and a word where there are not. */
+  ready() {
+    const { app } = this;
+    if (!app.result) app.say(this.searching ? 'The parts are still being looked for.' : 'There are no parts yet. The step Parts finds them.', 'news');
+    return Boolean(app.result) && !app.opener.underWay;
   }
 
   /** @param {string} name of a parameter @param {any} value null: the engine's default */

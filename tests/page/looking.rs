@@ -128,6 +128,17 @@ fn long_work_is_cancelled_at_once_and_nothing_is_lost() {
     // The engine was started afresh and knows what is open.
     slide(&mut page, "#control-number-of-parts", 4);
     page.wait_until("sinew.state().parts === 4 && !sinew.state().busy", 15.0);
+    // Where there were no parts yet, they can still be asked for.
+    page.evaluate("void sinew.app.opener.openCreature({ name: 'snake' }); sinew.app.on('source', () => setTimeout(() => sinew.app.cancel()))");
+    page.wait_until(
+        "!sinew.state().busy && !sinew.state().parts && document.querySelector('#find-parts').checkVisibility()",
+        15.0,
+    );
+    page.click("#find-parts");
+    page.wait_until(
+        "sinew.state().parts && !sinew.state().busy && !document.querySelector('#find-parts').checkVisibility()",
+        15.0,
+    );
 }
 
 #[test]

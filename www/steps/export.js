@@ -43,7 +43,7 @@ function build(app) {
   show(still,
     item('Parts as GLB', 'The moving source with a material for each part.', () => saveParts(app), 'export-parts'),
     item('Rigid skin', 'A joint for each part and every vertex on one of them, as engines like it; in its own materials. It says how far off that is.', () => saveRigid(app), 'export-rigid'),
-    item('Parts as numbers', 'The part of each face, sizes and residuals, JSON.', () => app.result && saveBlob(partsFile(app), `${fileName(app)}-parts.json`), 'export-labels'),
+    item('Parts as numbers', 'The part of each face, sizes and residuals, JSON.', () => app.parts.ready() && saveBlob(partsFile(app), `${fileName(app)}-parts.json`), 'export-labels'),
     item('Key points', 'Vertices, errors and how they were chosen, JSON.', () => (app.doc.count ? saveBlob(pointsFile(app), `${fileName(app)}-points.json`) : app.say('There are no key points yet. The step Key points finds them.', 'news')), 'export-points'));
   const size = select('Picture size', SIZES.map(([name, pixels]) => [name, pixels ? `${name}, ${pixels.join(' × ')}` : name]), SIZES[0][0], () => {});
   const video = videoType() && item('Video', 'The motion from beginning to end, as it plays now and as large as it is shown.', () => saveVideo(app), 'export-video');

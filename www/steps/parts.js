@@ -14,12 +14,14 @@ export const partsStep = {
   title: 'Parts',
   views: VIEWS,
   view: 'parts',
+  enter: (app) => app.parts.begin(),
   summary: (app) => (app.result ? plural(app.result.parts.length, 'part') : ''),
   build,
 };
 
 /** @param {import('../app.js').App} app */
 function build(app) {
+  const find = h('button', { type: 'button', class: 'button', id: 'find-parts', on: { click: () => app.parts.begin() } }, 'Find the parts');
   const quality = h('div');
   const noticed = h('div', { class: 'stack' });
   const curve = h('div');
@@ -42,9 +44,12 @@ function build(app) {
     show(deformation, ...weightPlot(app));
     show(table, partTable(app));
   };
+  const offer = () => (find.hidden = Boolean(app.result) || !app.sequence || app.parts.searching);
   app.on('result', showResult);
+  app.on('result busy', offer);
   showResult();
-  return h('div', { class: 'step' }, h('h2', {}, 'Parts'), stageLesson(app, 'parts'), quality, noticed, curve, ...folds);
+  offer();
+  return h('div', { class: 'step' }, h('h2', {}, 'Parts'), stageLesson(app, 'parts'), find, quality, noticed, curve, ...folds);
 }
 
 function curvePlot(app) {
