@@ -8,6 +8,8 @@ export class Transfer {
     this.app = app;
     /** The engine's answer: `{handles, indices, weights, K, matrices, warnings, seconds}`; null: the target stands still. */
     this.motion = null;
+    /** The answer that the engine could write to a file, and the worker that gave it: a new one knows of no motion. */
+    this.told = {};
     /** Files that were made of this motion, by form. */
     this.files = new Map();
     this.move = latest(() => this.#move());
@@ -58,21 +60,61 @@ export class Transfer {
     };
   }
 
+  /** Whether the target moves as its points and the method in force say. */
+  get current() {
+    const { pairs, parameters } = this.#message;
+    const asked = this.motion?.asked;
+    return asked?.parameters.method === parameters.method && asked.pairs.length === pairs.length && asked.pairs.every((vertex, i) => vertex === pairs[i]);
+  }
+
+  /** Whether it should move but nobody works on that, because it was cancelled or failed. */
+  get behind() {
+    const { app, pairs } = this;
+    return Boolean(app.doc.target) && pairs.length > 0 && app.keypoints.hasMotion && !this.current && !app.work.jobs.some(({ lane }) => lane === 'motion');
+  }
+
+  /** Goes on with what was cancelled. */
+  begin() {
+    if (this.behind && !this.app.opener.underWay) this.move();
+  }
+
   async #move() {
     const { app, pairs } = this;
-    const { target } = app.doc;
+    const { target, open } = app.doc;
     if (!target || !pairs.length || !app.keypoints.hasMotion) {
       if (this.motion) this.#set(null);
       return;
     }
+    if (this.current && !this.motion.quick) return;
     const started = performance.now();
     const message = this.#message;
-    const answer = await app.work.run('motion', 'moving the target', (progress) => app.engine.call('transfer', message, { progress }));
-    if (!answer || app.doc.target !== target) return;
+    const answer = await app.work.run('motion', 'moving the target', (progress) => this.#ask(message, progress));
+    if (app.doc.target !== target || app.doc.open !== open) return;
+    if (!answer) {
+      this.#takeBack();
+      return;
+    }
     answer.took = (performance.now() - started) / 1000;
     answer.pairs = pairs.length;
     answer.quick = message.quick;
     this.#set(answer);
+  }
+
+  /** Asks the engine for a motion, which takes the place of the one that it knew. */
+  async #ask(message, progress) {
+    const { engine } = this.app;
+    this.told = {};
+    const answer = await engine.call('transfer', message, { progress });
+    this.told = { asked: message, worker: engine.worker };
+    answer.asked = message;
+    return answer;
+  }
+
+  /** After a cancel or an error the method is again that of the motion that is shown. */
+  #takeBack() {
+    const { app, motion } = this;
+    const shown = motion?.asked.parameters.method;
+    if (motion && shown !== this.method) app.amend({ method: shown === app.about.transfer.method ? '' : shown });
   }
 
   #set(motion) {
@@ -112,8 +154,12 @@ export class Transfer {
     const { app, motion } = this;
     if (!motion) return undefined;
     if (!this.files.has(form)) {
-      const answer = await app.work.run(`export ${form}`, 'writing the file', async (progress) =>
-        app.engine.call('export_transfer', { form, ...await originals(app.doc.target.source) }, { progress }));
+      const answer = await app.work.run(`export ${form}`, 'writing the file', async (progress) => {
+        const looks = await originals(app.doc.target.source);
+        // Since something was cancelled, another worker may be there.
+        if (this.told.asked !== motion.asked || this.told.worker !== app.engine.worker) await this.#ask(motion.asked, progress);
+        return app.engine.call('export_transfer', { form, ...looks }, { progress });
+      });
       if (!answer || this.motion !== motion) return undefined;
       const { bytes, error, rms, images } = answer;
       this.files.set(form, { blob: new Blob([bytes], { type: 'model/gltf-binary' }), error, rms, images });

@@ -250,6 +250,15 @@ fn a_cancel_costs_one_step() {
     page.evaluate("sinew.app.cancel()");
     page.wait_until("!sinew.state().busy", PATIENT);
     assert_eq!(page.evaluate(DOCUMENT), before);
+    // The new worker is told of the motion before it writes it.
+    let file = page.evaluate_within("sinew.app.transfer.file('exact').then((file) => file?.blob.size ?? 0)", PATIENT);
+    assert!(file.as_f64().is_some_and(|bytes| bytes > 0.0), "{}", page.state());
+    page.evaluate("sinew.app.transfer.setMethod('relative'); sinew.app.cancel()");
+    page.wait_until("sinew.app.transfer.method === 'bones' && !sinew.state().busy", PATIENT);
+    page.evaluate("sinew.app.target.remove(0); sinew.app.cancel(); sinew.app.cancel()");
+    page.wait_until("!sinew.state().busy && sinew.app.transfer.behind", PATIENT);
+    page.evaluate("document.querySelector('#step-transfer').click()");
+    page.wait_until("!sinew.state().busy && sinew.app.transfer.current", PATIENT);
     page.evaluate("sinew.app.transfer.setMethod('relative')");
     page.wait_until("sinew.state().moves?.method === 'relative' && !sinew.state().busy", PATIENT);
 }

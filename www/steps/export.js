@@ -11,7 +11,10 @@ export const exportStep = {
   id: 'export',
   title: 'Export',
   pair: true,
-  enter: (app) => measure(app),
+  enter(app) {
+    app.transfer.begin();
+    measure(app);
+  },
   summary: () => '',
   build,
 };
@@ -38,7 +41,7 @@ function build(app) {
       look(app, files.values().next().value),
       item('Pairs', 'The key points of both as vertex numbers, JSON.', () => saveBlob(pairsFile(app), `${pairName(app)}-pairs.json`), 'export-pairs'),
       item('Report', 'Parameters, errors and times, JSON.', () => saveBlob(reportFile(app), `${pairName(app)}-report.json`), 'export-report'),
-    ] : [h('p', { class: 'small faint' }, app.doc.target ? 'The target does not move yet: its points have no place.' : 'With a target that moves, it can be taken away here.')]));
+    ] : [h('p', { class: 'small faint' }, app.doc.target ? `The target does not move yet${app.transfer.pairs.length ? '' : ': its points have no place'}.` : 'With a target that moves, it can be taken away here.')]));
   };
   show(still,
     item('Parts as GLB', 'The moving source with a material for each part.', () => saveParts(app), 'export-parts'),

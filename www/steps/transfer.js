@@ -17,6 +17,7 @@ export const transferStep = {
   pair: true,
   enter(app) {
     app.keypoints.begin();
+    app.transfer.begin();
     app.play();
   },
   summary: ({ transfer: { motion } }) => (motion ? plural(motion.pairs, 'pair') : ''),
@@ -28,8 +29,13 @@ function build(app) {
   const words = h('p', { class: 'small faint' });
   // While they are searched for there is nothing to be done about them.
   const found = () => app.doc.count || app.keypoints.searching;
-  const label = () => (go.textContent = found() ? 'Choose a target' : 'Find key points');
   const go = h('button', { type: 'button', class: 'button', on: { click: () => app.setStep(found() ? 'target' : 'keypoints') } });
+  const again = h('button', { type: 'button', class: 'button', id: 'transfer-again', on: { click: () => app.transfer.begin() } }, 'Let it move');
+  const now = () => {
+    words.textContent = introduction(app);
+    go.textContent = found() ? 'Choose a target' : 'Find key points';
+    again.hidden = !app.transfer.behind;
+  };
   const method = choice('Variant', METHODS, null, (value) => app.transfer.setMethod(value), 'stacked');
   const about = h('p', { class: 'small faint said' });
   const numbers = h('div');
@@ -38,9 +44,8 @@ function build(app) {
   const variants = h('div', {}, h('h3', {}, 'Variant'), method, about, beside);
   const update = () => {
     const { transfer: { motion, method: name, pairs }, doc } = app;
-    words.textContent = introduction(app);
     go.hidden = Boolean(motion) || pairs.length > 0 || !app.keypoints.hasMotion;
-    label();
+    now();
     variants.hidden = !doc.target || !doc.count;
     const chosen = method.querySelector(`[value="${name}"]`);
     if (chosen) chosen.checked = true;
@@ -51,9 +56,9 @@ function build(app) {
     show(noticed, ...warnings(app, motion?.warnings, app.second));
   };
   app.on('doc motion target source rival', update);
-  app.on('busy', label);
+  app.on('busy', now);
   update();
-  return h('div', { class: 'step' }, h('h2', {}, 'Transfer'), words, go, numbers, noticed, variants,
+  return h('div', { class: 'step' }, h('h2', {}, 'Transfer'), words, go, again, numbers, noticed, variants,
     fold('How it works', { load: () => lesson('transfer') }));
 }
 
@@ -64,6 +69,7 @@ function introduction(app) {
   if (!doc.target) return still ? 'The source stands still, in a single pose. Choose a target, and it takes that pose.' : 'Choose a target, and it moves like the source.';
   if (!transfer.pairs.length) return still ? 'Place a point on the target, and it takes the pose of the source.' : 'Place a point on the target, and it begins to move.';
   const does = still ? 'It takes the single pose of the source.' : 'It moves like the source.';
+  if (transfer.behind) return transfer.motion ? 'It moves as before: the points were changed, and the motion does not follow yet.' : 'It does not move yet.';
   const { proposed } = target.tally;
   return proposed ? `${does} ${plural(proposed, 'point')} of it ${proposed === 1 ? 'is' : 'are'} only proposed.`
     : `${does} Drag a point on it, and ${still ? 'the pose' : 'the motion'} follows.`;
