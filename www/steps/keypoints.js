@@ -45,13 +45,13 @@ function build(app) {
     const none = !doc.count;
     words.textContent = introduction(app);
     find.hidden = !none || !keypoints.hasMotion || keypoints.searching;
-    for (const box of [numbers, curve, list]) box.hidden = none;
+    for (const box of [numbers, noticed, curve, list]) box.hidden = none;
+    show(energy, ...energyPlot(app));
+    show(choices, ...choicePlot(app));
     if (none) return;
     show(numbers, pointFacts(app));
     show(noticed, ...warnings(app, doc.run?.warnings));
     show(curve, ...curvePlot(app));
-    show(energy, ...energyPlot(app));
-    show(choices, ...choicePlot(app));
   };
   app.on('doc points source busy', update);
   app.on('view place', () => show(choices, ...choicePlot(app)));
