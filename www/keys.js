@@ -82,12 +82,12 @@ function escape(app) {
 }
 
 /** Whether the control that has the focus wants this key for itself. */
-function mine({ target, key }) {
+function mine({ target, key, repeat }) {
   if (!(target instanceof Element)) return false;
   if (target.closest('select')) return key !== 'Escape';
   if (target.closest('input[type=range], input[type=radio]')) return key.startsWith('Arrow') || (key === ' ' && chooses(target));
-  // Pressing the step that is shown opens its panel, and does nothing where that is open.
-  if (target.closest('[aria-current=step]') && document.documentElement.dataset.panel !== 'away') return key === 'Enter';
+  // Pressing the step that is shown opens its panel, and does nothing where that is open; but Enter may still be held from choosing it.
+  if (target.closest('[aria-current=step]') && document.documentElement.dataset.panel !== 'away') return repeat && key === 'Enter';
   if (target.closest('button, summary, a, input, label')) return key === ' ' || key === 'Enter';
   return false;
 }
