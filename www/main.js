@@ -144,8 +144,8 @@ function openAddress(hash = location.hash) {
   const unknown = unknownOf(fields, app.about);
   const opened = tour && !fields.zoo ? beginTour(fields, tour) : enter(fields, () => {
     const address = query.get('src');
-    return address ? openOr(address, optionsOf(fields, app.about)) : app.opener.openCreature(recipeOf(fields, app.about) ?? {});
-  });
+    return address ? app.opener.openAddress(address, optionsOf(fields, app.about)) : app.opener.openCreature(recipeOf(fields, app.about) ?? {});
+  }).then(orFirst);
   if (tour && fields.zoo) app.guide.resume(...tour);
   opened.then(() => unknown && app.notice?.kind !== 'error' && app.say(unknown, 'news')).catch((error) => app.say(error.message));
 }
@@ -175,9 +175,9 @@ async function openProject({ state, source, target }) {
     { files: target.files, options: { ...app.about.options, ...target.options } });
 }
 
-/** Opens what `?src=` names, or the first creature with a word about what went wrong. */
-async function openOr(address, options) {
-  if ((await app.opener.openAddress(address, options)) || app.sequence) return;
+/** Where nothing could be opened, or that was cancelled: the first creature, with a word about what went wrong. */
+async function orFirst() {
+  if (app.sequence || app.opener.underWay) return;
   const { notice } = app;
   await app.opener.openCreature({});
   if (notice) app.say(notice.text);

@@ -32,6 +32,8 @@ function build(app) {
   const gallery = h('div');
   const update = () => {
     const { source, sequence } = app;
+    show(gallery, choice('Creature', app.about.creatures.map((name) => [name, title(name)]),
+      source?.kind === 'zoo' ? source.recipe.name : null, (name) => app.opener.openCreature({ name })));
     if (!sequence) return;
     show(current,
       h('p', { class: 'name' }, nameOf(app)),
@@ -45,8 +47,6 @@ function build(app) {
       ...warnings(app, untold(sequence.warnings)),
       source.kind === 'zoo' ? creatureOptions(app) : isGltf(app) && animationOptions(app), upright(app, 'source', 'step'));
     health.update();
-    show(gallery, choice('Creature', app.about.creatures.map((name) => [name, title(name)]),
-      source.kind === 'zoo' ? source.recipe.name : null, (name) => app.opener.openCreature({ name })));
   };
   app.on('source', update);
   update();
