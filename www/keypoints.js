@@ -188,16 +188,13 @@ export class KeyPoints {
     return this.find({ more: this.worked });
   }
 
-  /** Whether a vertex is a key point already. */
-  has(vertex) {
-    return this.app.doc.points.some(({ source }) => source === vertex);
-  }
-
-  /** Moves a point; its place on the target is asked anew. */
+  /** Moves a point; its place on the target is asked anew. One that is not in use makes way. */
   move(index, vertex, mark = null) {
     const { app } = this;
-    if (this.has(vertex)) return;
-    app.edit({ points: app.doc.points.with(index, fresh(vertex)) }, mark);
+    const { points, count } = app.doc;
+    if (this.used.some(({ source }) => source === vertex)) return;
+    const others = points.filter(({ source }, i) => i < count || source !== vertex);
+    app.edit({ points: others.with(index, fresh(vertex)) }, mark);
   }
 
   /** Adds a point after those in use and selects it. */

@@ -119,11 +119,11 @@ export class Target {
   /** Puts a point where a vertex of the target is. */
   place(index, vertex, mark = null) {
     const { app } = this;
-    const { points } = app.doc;
+    const { points, count } = app.doc;
     if (!points[index]) return;
-    if (points.some(({ target, state }, i) => i !== index && state === 'placed' && target === vertex)) return;
-    // Where another one was only proposed, that one is looked for elsewhere.
-    const free = points.map((point) => (point.state === 'proposed' && point.target === vertex ? fresh(point.source) : point));
+    if (points.some(({ target, state }, i) => i !== index && i < count && state === 'placed' && target === vertex)) return;
+    // Where another one was only proposed, or is not in use, that one is looked for elsewhere.
+    const free = points.map((point) => (point.target === vertex ? fresh(point.source) : point));
     app.edit({ points: free.with(index, Object.freeze({ source: points[index].source, target: vertex, state: 'placed', confidence: 1 })) }, mark);
   }
 
