@@ -162,7 +162,7 @@ fn the_solution_is_that_of_a_dense_solve() {
     let target = odd_target();
     let weights: Vec<f64> = (0..target.faces.len()).map(|f| 1.0 + 0.3 * f as f64).collect();
     let maps = some_maps(target.faces.len(), 0.3);
-    let found = Solver::new(&target, &weights, &[]).expect("a factor").solve(std::slice::from_ref(&maps), &[]);
+    let found = Solver::new(&target, &weights, &[]).expect("a factor").solve(1, &|_| maps.clone(), &[]);
     // The paper's own system: every face with a fourth vertex, rows for the nine entries of T − S, here by columns of x.
     let (n, m) = (target.len(), target.faces.len());
     let sound: Vec<usize> = (0..m).filter(|&f| area(&target, f) > 1e-9).collect();
@@ -232,16 +232,17 @@ fn pinned_vertices_go_where_they_are_told() {
     let pins = [3, 6, 9];
     let goals = vec![vec![DVec3::X, DVec3::Y, DVec3::Z], vec![DVec3::ZERO, DVec3::ONE, DVec3::NEG_X]];
     let solver = Solver::new(&target, &weights, &pins).expect("a factor");
-    let found = solver.solve(&maps, &goals);
+    let of_pose = |pose: usize| maps[pose].clone();
+    let found = solver.solve(maps.len(), &of_pose, &goals);
     for (pose, goals) in found.iter().zip(&goals) {
         for (&pin, goal) in pins.iter().zip(goals) {
             assert!(pose[pin as usize].distance(*goal) < 1e-9);
         }
     }
     // Told to go where they go anyway, they change nothing.
-    let free = Solver::new(&target, &weights, &[]).expect("a factor").solve(&maps, &[]);
+    let free = Solver::new(&target, &weights, &[]).expect("a factor").solve(maps.len(), &of_pose, &[]);
     let there: Vec<Vec<DVec3>> = free.iter().map(|pose| pins.map(|pin| pose[pin as usize]).to_vec()).collect();
-    for (a, b) in solver.solve(&maps, &there).iter().flatten().zip(free.iter().flatten()) {
+    for (a, b) in solver.solve(maps.len(), &of_pose, &there).iter().flatten().zip(free.iter().flatten()) {
         assert!(a.distance(*b) < 1e-9);
     }
 }

@@ -258,13 +258,12 @@ fn read_listed(order: &[&File], files: &[File], options: &Options) -> Result<Imp
             }
             Ok(imported)
         }
-        ([first, second, rest @ ..], _) => {
-            let names = match rest.len() {
-                0 => format!("{} and {}", first.name, second.name),
-                more => format!("{}, {} and {more} more", first.name, second.name),
-            };
-            Err(ImportError(format!("several glTF files were given ({names}); give one at a time")))
-        }
+        ([first, second, rest @ ..], _) => Err(ImportError(format!(
+            "several glTF files were given ({}, {}{}); give one at a time",
+            first.name,
+            second.name,
+            if rest.is_empty() { "" } else { ", …" }
+        ))),
         ([], []) => Err(ImportError(nothing_to_read(files))),
         ([], meshes) => numbered::open(meshes, options.look.then_some(files)),
     }

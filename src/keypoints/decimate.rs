@@ -63,7 +63,7 @@ struct Mesh<'a> {
 /// Collapses until about `target` vertices with faces are left. `keep` is #V: what must stay. Of faces between the same
 /// vertices, as in two-sided leaves, one is taken.
 pub fn decimate(faces: &[[u32; 3]], points: &[DVec3], keep: &[bool], target: usize) -> Coarse {
-    let mut mesh = Mesh::new(&distinct(faces), points);
+    let mut mesh = Mesh::new(faces, points);
     let mut onto: Vec<u32> = (0..points.len() as u32).collect();
     let mut left = mesh.around.iter().filter(|f| !f.is_empty()).count();
     let mut heap = BinaryHeap::new();
@@ -96,25 +96,18 @@ pub fn decimate(faces: &[[u32; 3]], points: &[DVec3], keep: &[bool], target: usi
     Coarse { faces, onto }
 }
 
-/// The faces without those whose corners another one has, in any order.
-fn distinct(faces: &[[u32; 3]]) -> Vec<[u32; 3]> {
-    let sorted = |mut face: [u32; 3]| {
-        face.sort_unstable();
-        face
-    };
-    let mut numbers: Vec<usize> = (0..faces.len()).collect();
-    numbers.sort_by_key(|&f| sorted(faces[f]));
-    numbers.dedup_by_key(|f| sorted(faces[*f]));
-    numbers.sort_unstable();
-    numbers.into_iter().map(|f| faces[f]).collect()
-}
-
 impl<'a> Mesh<'a> {
     fn new(faces: &[[u32; 3]], points: &'a [DVec3]) -> Self {
-        let mut around = vec![Vec::new(); points.len()];
+        let mut around: Vec<Vec<u32>> = vec![Vec::new(); points.len()];
         let mut quadrics = vec![Quadric::NONE; points.len()];
         let mut sides = Vec::with_capacity(3 * faces.len());
+        let mut alive = vec![true; faces.len()];
         for (f, face) in faces.iter().enumerate() {
+            let same = |other: &u32| face.iter().all(|v| faces[*other as usize].contains(v));
+            if around[face[0] as usize].iter().any(same) {
+                alive[f] = false;
+                continue;
+            }
             let [a, b, c] = face.map(|v| points[v as usize]);
             let normal = (b - a).cross(c - a);
             let area = 0.5 * normal.length();
@@ -136,7 +129,7 @@ impl<'a> Mesh<'a> {
                 [u, v].iter().for_each(|&v| quadrics[v as usize].add(&quadric));
             }
         }
-        let (alive, stamp) = (vec![true; faces.len()], vec![0; points.len()]);
+        let stamp = vec![0; points.len()];
         Self { points, faces: faces.to_vec(), alive, around, quadrics, stamp }
     }
 

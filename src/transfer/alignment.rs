@@ -51,7 +51,7 @@ pub fn align(pairs: &[(DVec3, DVec3)]) -> Alignment {
 
 /// The median ratio of distances. Few pairs say little of the size: then more is left to the unit balls.
 fn size(pairs: &[(DVec3, DVec3)]) -> f64 {
-    let pairs: Vec<&(DVec3, DVec3)> = pairs.iter().step_by(pairs.len().div_ceil(COMPARED).max(1)).collect();
+    let pairs: Vec<(DVec3, DVec3)> = pairs.iter().copied().step_by(pairs.len().div_ceil(COMPARED).max(1)).collect();
     let mut ratios = Vec::new();
     for (i, a) in pairs.iter().enumerate() {
         for b in &pairs[i + 1..] {

@@ -122,9 +122,10 @@ impl Prepared {
         steps.end("search", 1.0)?;
         let mut warnings = Vec::new();
         if rig.error > ROUGH {
-            let bones = if rig.bones == 1 { "one bone follows".into() } else { format!("{} bones follow", rig.bones) };
             let message = format!(
-                "the source bends everywhere: {bones} it to {:.1} % of its radius only, and the target follows no better",
+                "the source bends everywhere: its bones ({}) follow it to {:.1} % of its radius only, and the target follows no \
+                 better",
+                rig.bones,
                 100.0 * rig.error
             );
             warnings.push(Warning::new("not-rigid", message));

@@ -55,12 +55,12 @@ fn normalise(row: &mut [f64]) -> bool {
 }
 
 fn take_nearest(surface: &Surface, known: &[bool], rows: &mut [f64], count: usize) {
-    let givers: Vec<usize> = (0..known.len()).filter(|&v| known[v]).collect();
-    let places: Vec<DVec3> = givers.iter().map(|&v| surface.positions[v]).collect();
+    let givers: Vec<u32> = (0..known.len() as u32).filter(|&v| known[v as usize]).collect();
+    let places: Vec<DVec3> = givers.iter().map(|&v| surface.positions[v as usize]).collect();
     let tree = KdTree::new(&places);
     for v in (0..known.len()).filter(|&v| !known[v]) {
         if let Some((_, nearest)) = tree.nearest(surface.positions[v], f64::INFINITY, &|_| true) {
-            let from = givers[nearest as usize] * count;
+            let from = givers[nearest as usize] as usize * count;
             rows.copy_within(from..from + count, v * count);
         }
     }

@@ -68,20 +68,20 @@ fn maps(scene: &Scene, of_source: &[Option<DMat3>]) -> Vec<DMat3> {
 /// The target's poses: for each, #N positions in its unit ball.
 pub fn carry(scene: &Scene) -> Result<Vec<Vec<DVec3>>, NotPositiveDefinite> {
     let own = gradients(scene.source);
-    let maps = |pose: &Vec<DVec3>| maps(scene, &deformations(scene.source, &own, pose));
+    let maps = |pose: usize| maps(scene, &deformations(scene.source, &own, &scene.poses[pose]));
     let weights = weights(scene);
     let mut solver = Solver::new(scene.target, &weights, scene.pins)?;
     let goals = pinned(scene);
     if scene.doubt > 0.0 {
         let every = scene.poses.len().div_ceil(JUDGED).max(1);
-        let some: Vec<Vec<DMat3>> = scene.poses.iter().step_by(every).map(maps).collect();
+        let some: Vec<Vec<DMat3>> = (0..scene.poses.len()).step_by(every).map(maps).collect();
         let their: Vec<Vec<DVec3>> = goals.iter().step_by(every).cloned().collect();
-        let off = misfits(scene.target, &some, &solver.solve(&some, &their));
+        let off = misfits(scene.target, &some, &solver.solve(some.len(), &|i| some[i].clone(), &their));
         let trusted: Vec<f64> =
             weights.iter().zip(&off).map(|(w, off)| w / (1.0 + (off / scene.doubt).powi(2))).collect();
         solver = Solver::new(scene.target, &trusted, scene.pins)?;
     }
-    let mut poses = solver.solve(scene.poses.iter().map(maps), &goals);
+    let mut poses = solver.solve(scene.poses.len(), &maps, &goals);
     if goals.is_empty() {
         for (pose, of_source) in poses.iter_mut().zip(scene.poses) {
             settle(scene, of_source, pose);

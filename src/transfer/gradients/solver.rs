@@ -100,26 +100,29 @@ impl Solver {
         Ok(())
     }
 
-    /// #N positions for each pose: `maps` are #F linear maps a pose. `goals` are, for each pose, where the pins go; without
-    /// pins the first vertex is at the origin.
-    pub fn solve<M: AsRef<[DMat3]>>(&self, maps: impl IntoIterator<Item = M>, goals: &[Vec<DVec3>]) -> Vec<Vec<DVec3>> {
-        let mut poses = Vec::new();
-        // Maps take six times the room of positions: those of a pose go before the next come.
-        let mut sides = maps.into_iter().enumerate().map(|(pose, maps)| self.side(maps.as_ref(), goals.get(pose)));
-        loop {
-            let some: Vec<Vec<DVec3>> = sides.by_ref().take(AT_ONCE).collect();
-            if some.is_empty() {
-                return poses;
+    /// #N positions for each of `count` poses: `maps` gives the #F linear maps of one. `goals` are, for each pose, where the
+    /// pins go; without pins the first vertex is at the origin.
+    pub fn solve(&self, count: usize, maps: &dyn Fn(usize) -> Vec<DMat3>, goals: &[Vec<DVec3>]) -> Vec<Vec<DVec3>> {
+        let mut poses = Vec::with_capacity(count);
+        while poses.len() < count {
+            let next = poses.len()..count.min(poses.len() + AT_ONCE);
+            // Maps take six times the room of positions: those of a pose go before the next come.
+            let sides: Vec<Vec<DVec3>> = next.map(|pose| self.side(&maps(pose), goals.get(pose))).collect();
+            self.solve_some(&sides, goals, &mut poses);
+        }
+        poses
+    }
+
+    /// Solves for the next poses, of which these are the right sides.
+    fn solve_some(&self, sides: &[Vec<DVec3>], goals: &[Vec<DVec3>], poses: &mut Vec<Vec<DVec3>>) {
+        let mut columns = columns(sides);
+        self.factor.solve(&mut columns);
+        for i in 0..sides.len() {
+            let mut points = self.equations.points(&columns, i);
+            if let Some(goals) = goals.get(poses.len()) {
+                self.correct(&mut points, goals);
             }
-            let mut columns = columns(&some);
-            self.factor.solve(&mut columns);
-            for i in 0..some.len() {
-                let mut points = self.equations.points(&columns, i);
-                if let Some(goals) = goals.get(poses.len()) {
-                    self.correct(&mut points, goals);
-                }
-                poses.push(points);
-            }
+            poses.push(points);
         }
     }
 

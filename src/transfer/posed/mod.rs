@@ -62,7 +62,7 @@ pub fn posture(
     let mean = (areas.iter().sum::<f64>() / areas.len().max(1) as f64).max(f64::MIN_POSITIVE);
     let weights: Vec<f64> = areas.iter().map(|area| (area / mean).max(1e-3)).collect();
     let solver = Solver::new(target, &weights, &[])?;
-    let mut positions = solver.solve(std::slice::from_ref(&turns), &[]).pop().unwrap_or_default();
+    let mut positions = solver.solve(1, &|_| turns.clone(), &[]).pop().unwrap_or_default();
     stay(target, &turns, &areas, &mut positions);
     Ok(Posture { turns, positions, parts: count })
 }

@@ -205,20 +205,24 @@ fn of_large_pieces(faces: &[[u32; 3]], points: &[DVec3], used: &[u32], most: usi
     if pieces.count <= most {
         return used.to_vec();
     }
-    let mut areas: Vec<(f64, usize)> = (0..pieces.count).map(|piece| (0.0, piece)).collect();
+    let mut areas = vec![0.0; pieces.count];
     for (&piece, area) in pieces.face.iter().zip(face::areas(faces, points)) {
-        areas[piece as usize].0 += area;
+        areas[piece as usize] += area;
     }
-    areas.sort_by(|a, b| b.0.total_cmp(&a.0).then(a.1.cmp(&b.1)));
-    let mut left = COVERED * areas.iter().map(|piece| piece.0).sum::<f64>();
+    // As in `farthest_now`: the largest first, and of equals the first.
+    let mut waiting: BinaryHeap<(u64, u32)> =
+        areas.iter().zip(0..).map(|(a, piece): (&f64, u32)| (a.to_bits(), !piece)).collect();
+    let mut left = COVERED * areas.iter().sum::<f64>();
     let mut large = vec![false; pieces.count];
-    for &(area, piece) in &areas[..most] {
-        large[piece] = left >= 0.0;
-        left -= area;
+    for _ in 0..most {
+        let Some((_, reversed)) = waiting.pop().filter(|_| left >= 0.0) else { break };
+        large[!reversed as usize] = true;
+        left -= areas[!reversed as usize];
     }
     let mut heard = vec![false; points.len()];
-    let of_large = faces.iter().zip(&pieces.face).filter(|(_, piece)| large[**piece as usize]);
-    of_large.flat_map(|(corners, _)| corners).for_each(|&v| heard[v as usize] = true);
+    for (corners, &piece) in faces.iter().zip(&pieces.face) {
+        corners.iter().for_each(|&v| heard[v as usize] |= large[piece as usize]);
+    }
     used.iter().copied().filter(|&v| heard[v as usize]).collect()
 }
 

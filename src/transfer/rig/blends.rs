@@ -47,14 +47,14 @@ pub fn blends(surface: &Surface, rows: &[Row], bones: usize) -> Blends {
     for (corners, area) in surface.faces.iter().zip(&areas) {
         shares_in(rows, corners, &mut shares);
         let points = corners.map(|v| surface.positions[v as usize]);
-        for (n, (i, a)) in shares.iter().enumerate() {
-            let Some(met) = met.get_mut(*i as usize) else { continue };
-            for (j, b) in &shares[n..] {
-                let place = met.iter().position(|blend| blend.0 == *j).unwrap_or_else(|| {
-                    met.push((*j, Blend::default()));
+        for (n, &(i, a)) in shares.iter().enumerate() {
+            for &(j, b) in &shares[n..] {
+                let Some(met) = met.get_mut(i.min(j) as usize) else { continue };
+                let place = met.iter().position(|blend| blend.0 == i.max(j)).unwrap_or_else(|| {
+                    met.push((i.max(j), Blend::default()));
                     met.len() - 1
                 });
-                met[place].1.add(area / total, points, *a, *b);
+                met[place].1.add(area / total, points, a, b);
             }
         }
     }
@@ -63,7 +63,7 @@ pub fn blends(surface: &Surface, rows: &[Row], bones: usize) -> Blends {
     named.filter(|(_, blend)| blend.weight > LEAST).collect()
 }
 
-/// The bones at the corners of a face, ascending, and their shares there.
+/// The bones at the corners of a face, and their shares there.
 fn shares_in(rows: &[Row], corners: &[u32; 3], shares: &mut Vec<(u32, DVec3)>) {
     shares.clear();
     for (corner, &v) in corners.iter().enumerate() {
@@ -74,7 +74,6 @@ fn shares_in(rows: &[Row], corners: &[u32; 3], shares: &mut Vec<(u32, DVec3)>) {
             }
         }
     }
-    shares.sort_unstable_by_key(|entry| entry.0);
 }
 
 #[cfg(test)]
