@@ -104,7 +104,9 @@ impl<'a> Mesh<'a> {
         let mut alive = vec![true; faces.len()];
         for (f, face) in faces.iter().enumerate() {
             let same = |other: &u32| face.iter().all(|v| faces[*other as usize].contains(v));
-            if around[face[0] as usize].iter().any(same) {
+            // At the corner with the fewest: a fan has thousands of faces around its middle.
+            let few = face.iter().map(|&v| &around[v as usize]).min_by_key(|faces| faces.len());
+            if few.is_some_and(|faces| faces.iter().any(same)) {
                 alive[f] = false;
                 continue;
             }

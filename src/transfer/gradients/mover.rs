@@ -41,8 +41,8 @@ pub struct Mover {
 /// The source bent into the target.
 #[derive(Clone, Debug, Default)]
 pub struct Bent {
-    /// At first and after each round #V positions of the source's vertices, in the target's own frame and scale. By [`Method::Posed`] of
-    /// the last time that it was bent, into the target in the source's posture.
+    /// At first and after each round #V positions of the source's vertices, in the target's own frame and scale. By
+    /// [`Method::Posed`] of the last time that it was bent, into the target in the source's posture.
     pub shapes: Vec<Vec<DVec3>>,
     /// How well it covers the target.
     pub quality: Quality,
