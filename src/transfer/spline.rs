@@ -19,7 +19,7 @@ pub struct Spline {
 }
 
 impl Spline {
-    /// Interpolates displacements at points that differ; near repetitions are met in the mean. Of more than [`MOST`] points
+    /// Interpolates displacements at points that differ; near repetitions are met in the mean. Of more than 500 points
     /// some are met, evenly.
     pub fn new(known: &[(DVec3, DVec3)]) -> Self {
         Self::loose(known, RIDGE)
