@@ -8,7 +8,7 @@ export class Transfer {
     this.app = app;
     /** The engine's answer: `{handles, indices, weights, K, matrices, warnings, seconds}`; null: the target stands still. */
     this.motion = null;
-    /** The answer that the engine could write to a file, and the worker that gave it: a new one knows of no motion. */
+    /** What was asked for the motion that the engine could write to a file, and the worker that knows it: a new one knows none. */
     this.told = {};
     /** Files that were made of this motion, by form. */
     this.files = new Map();
@@ -91,7 +91,7 @@ export class Transfer {
     const answer = await app.work.run('motion', 'moving the target', (progress) => this.#ask(message, progress));
     if (app.doc.target !== target || app.doc.open !== open) return;
     if (!answer) {
-      this.#takeBack();
+      this.#takeBack(message);
       return;
     }
     answer.took = (performance.now() - started) / 1000;
@@ -110,11 +110,11 @@ export class Transfer {
     return answer;
   }
 
-  /** After a cancel or an error the method is again that of the motion that is shown. */
-  #takeBack() {
+  /** After a cancel or an error the method is again that of the motion that is shown, unless another was chosen meanwhile. */
+  #takeBack({ parameters }) {
     const { app, motion } = this;
     const shown = motion?.asked.parameters.method;
-    if (motion && shown !== this.method) app.amend({ method: shown === app.about.transfer.method ? '' : shown });
+    if (motion && shown !== this.method && parameters.method === this.method) app.amend({ method: shown === app.about.transfer.method ? '' : shown });
   }
 
   #set(motion) {

@@ -197,9 +197,9 @@ fn used(faces: &[[u32; 3]], stands: &[u32], diagonal: f64) -> Vec<u32> {
     (0..stands.len() as u32).filter(|&v| used[v as usize] && stands[v as usize] == v).collect()
 }
 
-/// Those of the vertices that count as samples: of a surface in more than `most` pieces, such as a body with thousands of
-/// hairs, those on the largest pieces, which make up [`COVERED`] of it, and no more than `most` of them. Every piece gets a
-/// sample before any gets another, and none would be left for the body.
+/// Those of the vertices that may become samples: of a surface in more than `most` pieces, such as a body with thousands
+/// of hairs, those on the largest pieces, which make up [`COVERED`] of it, and no more than `most` of them. Every piece
+/// gets a sample before any gets another, and none would be left for the body.
 fn of_large_pieces(faces: &[[u32; 3]], points: &[DVec3], used: &[u32], most: usize) -> Vec<u32> {
     let pieces = pieces(faces, points.len());
     if pieces.count <= most {
