@@ -86,6 +86,26 @@ fn a_mesh_moves_like_itself() {
     }
 }
 
+/// A body without the faces between its bones, as a robot is, hangs together as it does with them.
+#[test]
+fn a_body_in_pieces_moves_as_one() {
+    for (name, most) in [("person", 0.009), ("horse", 0.005)] {
+        let whole = creature(name, 4_000);
+        let main = |v: u32| whole.weights[v as usize].iter().max_by(|a, b| a.1.total_cmp(&b.1)).map(|share| share.0);
+        let within = |face: &[u32; 3]| face.iter().all(|&v| main(v) == main(face[0]));
+        let faces = whole.sequence.faces().iter().copied().filter(within).collect();
+        let target =
+            Sequence::new("in pieces", faces, whole.sequence.reference().to_vec(), Vec::new()).expect("a mesh");
+        let count = Surface::new(&target).pieces().len();
+        let pairs: Vec<Pair> =
+            far_apart(target.reference(), 8).into_iter().map(|v| Pair { source: v, target: v }).collect();
+        let result = by_default(&whole.sequence, &target, &pairs);
+        let found = error(&target, &result.poses(target.reference()), whole.sequence.poses());
+        println!("{name} in {count} pieces {found:.4}");
+        assert!(count > 10 && found < most, "{name}, {count} pieces: {found}");
+    }
+}
+
 /// Rotations of a creature's bones in a pose, from the vertices that follow hardly another bone, by the bones' names.
 fn rotations(creature: &Creature, pose: &[DVec3]) -> BTreeMap<String, DMat3> {
     let mut moments = vec![(Moments::default(), 0); creature.parts.len()];

@@ -7,9 +7,9 @@
 
 use super::alignment::Alignment;
 use super::propose::{Proposer, guides};
-use super::registration::{Effort, Foot, Ground, Known, LOST, Pin, Registration, feet};
+use super::registration::{Effort, Ground, Known, LOST, Pin, Registration, feet};
 use super::spline::Spline;
-use super::surface::Surface;
+use super::surface::{Foot, Surface};
 use super::{Pair, TransferError};
 use glam::DVec3;
 use std::sync::Arc;

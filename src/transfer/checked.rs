@@ -6,13 +6,13 @@ use crate::sequence::Sequence;
 use crate::warning::Warning;
 use std::collections::BTreeMap;
 
-/// The surfaces of a source and of a target, both with faces.
+/// The surfaces of a source and of a target, both with faces; the target's pieces are tied.
 pub fn surfaces(source: &Sequence, target: &Sequence) -> Result<[Surface; 2], TransferError> {
     let surface = |sequence: &Sequence, side: &'static str| {
         let surface = Surface::new(sequence);
         if surface.faces.is_empty() { Err(TransferError::NoFaces { side }) } else { Ok(surface) }
     };
-    Ok([surface(source, "source")?, surface(target, "target")?])
+    Ok([surface(source, "source")?, surface(target, "target")?.tied()])
 }
 
 /// The pairs without repetitions, their vertices within range; what was left out or is scarce goes to the warnings.

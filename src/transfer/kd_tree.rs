@@ -39,7 +39,12 @@ impl<const D: usize> KdTree<D> {
 
     /// The number of the nearest point that is `wanted`; `None` if there is none.
     pub fn nearest_of(&self, to: &[f64; D], wanted: impl Fn(u32) -> bool) -> Option<u32> {
-        let mut search = Search { tree: self, to, wanted, apart: [0.0; D], best: f64::INFINITY, found: None };
+        self.nearest_within(f64::INFINITY, to, wanted)
+    }
+
+    /// The number of the nearest point that is `wanted` and nearer than `reach`; `None` if there is none.
+    pub fn nearest_within(&self, reach: f64, to: &[f64; D], wanted: impl Fn(u32) -> bool) -> Option<u32> {
+        let mut search = Search { tree: self, to, wanted, apart: [0.0; D], best: reach * reach, found: None };
         search.part(0, self.points.len(), 0, 0.0);
         search.found
     }

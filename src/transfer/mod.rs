@@ -32,6 +32,7 @@ pub mod rig;
 mod skin;
 pub mod spline;
 pub mod surface;
+mod ties;
 
 pub use error::TransferError;
 pub use parameters::{Method, Parameters};

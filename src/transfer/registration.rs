@@ -6,7 +6,7 @@
 //! is factored once; a round is one solve.
 
 use super::kd_tree::KdTree;
-use super::surface::{Surface, nearest_in_triangle};
+use super::surface::{Foot, Surface};
 use crate::linalg::cholesky::{Cholesky, NotPositiveDefinite};
 use crate::linalg::polar;
 use crate::mesh::laplacian::Laplacian;
@@ -30,15 +30,8 @@ const NEAR: f64 = 0.35;
 const STRETCH: f64 = 3.0;
 /// Cotangents are kept above this: obtuse triangles do not push.
 const LEAST_COTANGENT: f64 = 0.01;
-
-/// A place on a mesh: a face, and the shares of its corners.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Foot {
-    /// The number of the face.
-    pub face: u32,
-    /// Shares that sum to 1.
-    pub shares: [f64; 3],
-}
+/// What a tie between two pieces weighs, as a cotangent.
+const TIE: f64 = 0.1;
 
 /// The source as something to be found on.
 pub struct Ground {
@@ -56,14 +49,8 @@ impl Ground {
     /// without faces.
     pub fn foot(&self, surface: &Surface, point: DVec3, normal: DVec3) -> Option<(Foot, DVec3, u32)> {
         let vertex = self.tree.nearest(&key(point, normal))?;
-        let at = |f: u32| {
-            let corners = surface.faces[f as usize].map(|v| surface.positions[v as usize]);
-            let shares = nearest_in_triangle(point, corners);
-            let foot = corners[0] * shares[0] + corners[1] * shares[1] + corners[2] * shares[2];
-            (Foot { face: f, shares }, foot, foot.distance_squared(point))
-        };
-        let found = surface.faces_around(vertex as usize).iter().map(|&f| at(f)).min_by(|a, b| a.2.total_cmp(&b.2))?;
-        Some((found.0, found.1, vertex))
+        let (foot, place) = surface.nearest_around(vertex, point)?;
+        Some((foot, place, vertex))
     }
 }
 
@@ -111,8 +98,8 @@ impl Registration {
     /// Factors the systems of a target.
     pub fn new(target: &Surface) -> Result<Self, NotPositiveDefinite> {
         let laplacian = Laplacian::new(&target.faces, &target.positions);
-        let edges: Vec<([u32; 2], f64)> =
-            laplacian.edges.iter().zip(&laplacian.cotangents).map(|(&e, &c)| (e, c.max(LEAST_COTANGENT))).collect();
+        let within = laplacian.edges.iter().zip(&laplacian.cotangents).map(|(&e, &c)| (e, c.max(LEAST_COTANGENT)));
+        let edges: Vec<([u32; 2], f64)> = within.chain(target.ties().iter().map(|&(a, b)| ([a, b], TIE))).collect();
         let mut entries = Vec::with_capacity(3 * edges.len() + target.len());
         for &([a, b], weight) in &edges {
             entries.extend([(a, a, weight), (b, b, weight), (a.max(b), a.min(b), -weight)]);

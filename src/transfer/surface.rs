@@ -1,9 +1,10 @@
 //! A mesh as the transfer sees it: welded, without loose vertices, at unit size.
 
 use super::kd_tree::KdTree;
+use super::ties::ties;
 use crate::mesh::ball::unit_ball;
 use crate::mesh::doctor::outward;
-pub use crate::mesh::face::nearest_in_triangle;
+use crate::mesh::face::nearest_in_triangle;
 use crate::mesh::pieces::{Pieces, pieces};
 use crate::mesh::{face, weld};
 use crate::sequence::Sequence;
@@ -11,6 +12,15 @@ use glam::DVec3;
 
 /// How far apart, in radii of the mesh, vertices along a seam may lie.
 const WELD_TOLERANCE: f64 = 1e-6;
+
+/// A place on a mesh: a face, and the shares of its corners.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Foot {
+    /// The number of the face.
+    pub face: u32,
+    /// Shares that sum to 1.
+    pub shares: [f64; 3],
+}
 
 /// The vertices that faces use, one for each place on the surface, about the centre of the mesh and in its radius.
 #[derive(Clone, Debug)]
@@ -37,6 +47,7 @@ pub struct Surface {
     /// Where the neighbours of each place begin in `beside`, #N + 1.
     neighbour_start: Vec<u32>,
     beside: Vec<u32>,
+    ties: Vec<(u32, u32)>,
 }
 
 impl Surface {
@@ -77,6 +88,7 @@ impl Surface {
             around: Vec::new(),
             neighbour_start: Vec::new(),
             beside: Vec::new(),
+            ties: Vec::new(),
             vertex,
             faces,
         };
@@ -125,12 +137,36 @@ impl Surface {
         normals.into_iter().map(DVec3::normalize_or_zero).collect()
     }
 
+    /// The same surface, its pieces tied where they touch: places at both ends of a tie are neighbours.
+    pub fn tied(mut self) -> Self {
+        self.ties = ties(&self);
+        self.link();
+        self
+    }
+
+    /// Pairs of places of different pieces that belong together.
+    pub fn ties(&self) -> &[(u32, u32)] {
+        &self.ties
+    }
+
+    /// The place on the faces around a vertex that is nearest to a point, and where it is.
+    pub fn nearest_around(&self, vertex: u32, point: DVec3) -> Option<(Foot, DVec3)> {
+        let at = |&face: &u32| {
+            let corners = self.faces[face as usize].map(|v| self.positions[v as usize]);
+            let shares = nearest_in_triangle(point, corners);
+            let place = corners[0] * shares[0] + corners[1] * shares[1] + corners[2] * shares[2];
+            (Foot { face, shares }, place, place.distance_squared(point))
+        };
+        let found = self.faces_around(vertex as usize).iter().map(at).min_by(|a, b| a.2.total_cmp(&b.2))?;
+        Some((found.0, found.1))
+    }
+
     /// The faces around a place.
     pub fn faces_around(&self, place: usize) -> &[u32] {
         &self.around[self.start[place] as usize..self.start[place + 1] as usize]
     }
 
-    /// The places that share an edge with a place.
+    /// The places that share an edge or a tie with a place.
     pub fn neighbours(&self, place: usize) -> &[u32] {
         &self.beside[self.neighbour_start[place] as usize..self.neighbour_start[place + 1] as usize]
     }
@@ -172,7 +208,8 @@ impl Surface {
     fn link(&mut self) {
         let corners = self.faces.iter().zip(0_u32..).flat_map(|(face, f)| face.map(|v| (v, f)));
         (self.start, self.around) = lists(self.len(), corners.collect());
-        let pairs = self.faces.iter().flat_map(|&[a, b, c]| [(a, b), (b, a), (b, c), (c, b), (c, a), (a, c)]);
+        let sides = self.faces.iter().flat_map(|&[a, b, c]| [(a, b), (b, c), (c, a)]);
+        let pairs = sides.chain(self.ties.iter().copied()).flat_map(|(a, b)| [(a, b), (b, a)]);
         (self.neighbour_start, self.beside) = lists(self.len(), pairs.collect());
     }
 

@@ -24,7 +24,7 @@ struct Bundle {
     budget: usize,
 }
 
-const BUNDLES: [Bundle; 2] = [Bundle { name: "page", budget: 1_200_000 }, Bundle { name: "worker", budget: 1_118_000 }];
+const BUNDLES: [Bundle; 2] = [Bundle { name: "page", budget: 1_200_000 }, Bundle { name: "worker", budget: 1_122_000 }];
 
 /// Where the result lies.
 pub fn folder() -> PathBuf {

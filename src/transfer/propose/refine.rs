@@ -42,7 +42,7 @@ impl Refiner {
             let shape = Shape::new(&sequence);
             (!shape.is_empty() && shape.radius > 0.0 && shape.positions.iter().all(|p| p.is_finite())).then_some(shape)
         });
-        let (source, target) = (source?, target?);
+        let (source, target) = (source?, target?.tied());
         let registration = Registration::new(&target).ok()?;
         Some(Self { ground: Ground::new(&source), source, target, registration })
     }
