@@ -5,16 +5,18 @@
 
 use super::fill::fill;
 use super::kd_tree::KdTree;
-use super::mend::SMALL;
-use super::registration::Foot;
+use super::mend::{SHORT, SMALL};
 use super::rig::weights::{Averager, Row, main_bone};
-use super::surface::Surface;
+use super::surface::{Foot, Surface};
 use crate::mesh::groups::Groups;
+use glam::DVec3;
 use std::collections::BTreeMap;
 
 /// A piece lies over others that are no farther on average than this, over the diagonal of its box. (A hand that was cut
 /// off is near the arm at its end only.) So does any small piece, such as a button.
 const NEAR: f64 = 0.2;
+/// Half of a layer is over something: the way there is along its normal, by this cosine.
+const OVER: f64 = 0.5;
 /// How far along a layer what it follows is evened out, over that diagonal: two legs move one skirt.
 const EVEN: f64 = 0.1;
 /// Rounds of averaging for that, the most.
@@ -69,12 +71,11 @@ pub fn lay(
     if unmarked.is_empty() {
         return;
     }
-    let body = Body::new(target, &pieces.1.marked, rows);
-    unmarked.retain(|piece| {
+    let body = Body::of_layers(target, &pieces.1.marked, &mut unmarked, rows);
+    for piece in &unmarked {
         let beneath = body.beneath(piece);
         beneath.iter().flatten().zip(piece).for_each(|(&u, &v)| rows[v as usize] = rows[u as usize].clone());
-        beneath.is_some()
-    });
+    }
     fill(target, rows, &body.strays(&unmarked, rows));
     unmarked.iter().for_each(|piece| even(target, piece, rows, most));
 }
@@ -89,6 +90,19 @@ struct Body<'a> {
 }
 
 impl<'a> Body<'a> {
+    /// The marked places of a surface, and the pieces that are no layers on these: a body may be in pieces itself. Of
+    /// `pieces`, layers remain.
+    fn of_layers(surface: &'a Surface, marked: &[bool], pieces: &mut Vec<Vec<u32>>, rows: &[Row]) -> Self {
+        let held = Self::new(surface, marked, rows);
+        let mut all = marked.to_vec();
+        pieces.retain(|piece| {
+            let layer = surface.sides(piece).max_element() <= SMALL || held.lies_under(piece);
+            piece.iter().for_each(|&v| all[v as usize] |= !layer);
+            layer
+        });
+        Self::new(surface, &all, rows)
+    }
+
     /// The marked places of a surface, one at least.
     fn new(surface: &'a Surface, marked: &[bool], rows: &[Row]) -> Self {
         let places: Vec<u32> = (0..surface.len() as u32).filter(|&v| marked[v as usize]).collect();
@@ -103,18 +117,26 @@ impl<'a> Body<'a> {
         Self { surface, tree: KdTree::new(&points), places, joined }
     }
 
-    /// For each place of a piece the place beneath it, if the piece is a layer.
+    /// For each place of a piece the place beneath it.
     fn beneath(&self, piece: &[u32]) -> Option<Vec<u32>> {
         let at = |v: u32| self.surface.positions[v as usize];
-        let below = |&v: &u32| Some(self.places[self.tree.nearest(&at(v).to_array())? as usize]);
-        let beneath: Vec<u32> = piece.iter().map(below).collect::<Option<_>>()?;
-        let (mut sum, mut mass) = (0.0, 0.0);
-        for (&v, &u) in piece.iter().zip(&beneath) {
-            sum += self.surface.mass[v as usize] * at(v).distance(at(u));
-            mass += self.surface.mass[v as usize];
+        piece.iter().map(|&v| Some(self.places[self.tree.nearest(&at(v).to_array())? as usize])).collect()
+    }
+
+    /// Whether a piece is a layer on this: near it, and over it rather than beside it as the next piece of a trunk is.
+    fn lies_under(&self, piece: &[u32]) -> bool {
+        let (mut sum, mut over, mut all) = (0.0, 0.0, 0.0);
+        for (&v, &u) in piece.iter().zip(self.beneath(piece).iter().flatten()) {
+            let Surface { positions, normals, mass, .. } = self.surface;
+            let (at, mass) = (positions[v as usize], mass[v as usize]);
+            let way = self.surface.nearest_around(u, at).map_or(DVec3::ZERO, |found| found.1 - at);
+            sum += mass * way.length();
+            all += mass;
+            if way.length() < SHORT || way.dot(normals[v as usize]).abs() >= OVER * way.length() {
+                over += mass;
+            }
         }
-        let sides = self.surface.sides(piece);
-        (sides.max_element() <= SMALL || sum <= NEAR * sides.length() * mass).then_some(beneath)
+        sum <= NEAR * self.surface.sides(piece).length() * all && over >= 0.5 * all
     }
 
     /// #N whether a place of a layer is on a stray patch of it: what lies beneath does not adjoin, on the body, what lies
