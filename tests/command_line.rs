@@ -267,7 +267,18 @@ fn transfer_by_faces_reads_lines_and_compares_methods() {
         assert!(error < if method == "gradients" { 1e-6 } else { 0.2 }, "{method}: {error}");
         assert!(folder.join(method).join("pose_001.obj").is_file());
     }
-    run(&[&common[..], &["--compare", "compare.json", "--truth", "pose.2.obj", "pose.10.obj"]].concat());
+    for (options, said) in [
+        ("--method gradients --bones 5", "leave --bones out"),
+        ("--variant relative --bones 5", "leave --bones out"),
+        ("--method posed --light --out out.glb", "leave --light out"),
+        ("--method posed --variant direct", "leave --variant out"),
+        ("--pin 0", "--pin is for"),
+    ] {
+        let output = sinew(&folder, &common.iter().copied().chain(options.split(' ')).collect::<Vec<_>>());
+        let error = String::from_utf8_lossy(&output.stderr);
+        assert!(output.status.code() == Some(2) && error.contains(said), "{options}: {error}");
+    }
+    run(&[&common[..], &["--bones", "5", "--compare", "compare.json", "--truth", "pose.2.obj", "pose.10.obj"]].concat());
     let report = json(&std::fs::read(folder.join("compare.json")).unwrap());
     let names: Vec<&str> = report["methods"].as_array().unwrap().iter().filter_map(|m| m["method"].as_str()).collect();
     assert_eq!(names, ["bones", "direct", "relative", "gradients", "posed"]);

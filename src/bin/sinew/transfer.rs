@@ -39,7 +39,7 @@ pub struct Transfer {
     /// Which of the family
     #[arg(long, value_enum, default_value_t = Variant::Default)]
     variant: Variant,
-    /// The most bones that are sought in the source
+    /// The most bones that are sought in the source, by the default method and variant
     #[arg(long, value_parser = clap::value_parser!(u32).range(1..=256))]
     bones: Option<u32>,
     /// Write the moving target
@@ -172,6 +172,9 @@ impl Transfer {
             true if self.light => refuse("a skin needs handles, and this method has none: leave --light out"),
             true if self.variant != Variant::Default => refuse("this method has no variants: leave --variant out"),
             false if !self.pin.is_empty() => refuse("--pin is for the methods gradients and posed"),
+            _ if self.bones.is_some() && method != Method::Bones => {
+                refuse("only the method biharmonic without a variant seeks bones: leave --bones out")
+            }
             _ => Ok(()),
         }
     }
