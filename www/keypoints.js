@@ -14,7 +14,7 @@ export const MOST_POINTS = 60;
  * @property {number} source vertex
  * @property {number|null} target vertex
  * @property {'missing'|'none'|'proposed'|'placed'} state `none`: taken away by hand, so not to be proposed
- * @property {number} confidence of a proposal
+ * @property {number|null} confidence of a proposal; null: not known yet
  * @property {boolean} [given] placed, but not by the visitor: it came with the creatures
  */
 

@@ -52,7 +52,7 @@ function read(vertex, text) {
   const proposed = text.startsWith(PROPOSED);
   const target = Number(text.slice(proposed ? 1 : 0));
   if (!text || !Number.isInteger(target) || target < 0) return fresh(vertex);
-  return Object.freeze({ source: vertex, target, state: proposed ? 'proposed' : 'placed', confidence: proposed ? 0 : 1 });
+  return Object.freeze({ source: vertex, target, state: proposed ? 'proposed' : 'placed', confidence: proposed ? null : 1 });
 }
 
 /**

@@ -15,8 +15,6 @@ export class Target {
   /** @param {import('./app.js').App} app */
   constructor(app) {
     this.app = app;
-    /** The point whose place is most worth a click; −1: none. */
-    this.next = -1;
     /** The sequence that the engine knows. */
     this.known = null;
     this.proposing = latest(() => this.#propose());
@@ -107,13 +105,18 @@ export class Target {
     return tally;
   }
 
+  /** The point whose place is most worth a click: of those that are proposed the one that is least sure; −1: none is. */
+  get next() {
+    const doubts = this.app.keypoints.used.map(({ state, confidence }) => (state === 'proposed' ? 1 - (confidence ?? 1) : -1));
+    const most = Math.max(...doubts);
+    return most < 0 ? -1 : doubts.indexOf(most);
+  }
+
   /** The point that a click on the target places. */
   get wanted() {
-    const { app } = this;
+    const { app, next } = this;
     if (app.selected >= 0) return app.selected;
-    const { used } = app.keypoints;
-    if (this.next >= 0 && used[this.next]?.state !== 'placed') return this.next;
-    return used.findIndex(({ state }) => state !== 'placed');
+    return next >= 0 ? next : app.keypoints.used.findIndex(({ state }) => state !== 'placed');
   }
 
   /** Puts a point where a vertex of the target is. */
@@ -144,8 +147,6 @@ export class Target {
 
   acceptAll() {
     this.app.edit({ points: this.app.doc.points.map((point) => (point.state === 'proposed' ? placed(point) : point)) });
-    this.next = -1;
-    this.app.changed('doc');
     this.app.play();
   }
 
@@ -188,30 +189,25 @@ export class Target {
         const told = sequence ? app.engine.call('restore_target', { kept: sequence }) : app.engine.call('drop_target', {});
         told.catch(() => {});
       }
-      this.next = -1;
       this.field = null;
       app.changed('target');
     }
     if (app.view === 'weights') this.weigh();
     const used = after.points.slice(0, after.count);
-    if (after.target && used.some(({ state }) => state === 'missing')) this.proposing();
+    // A link says where points are proposed, and not how sure that is.
+    if (after.target && used.some(({ state, confidence }) => state === 'missing' || confidence === null)) this.proposing();
   }
 
   async #propose() {
     const { app } = this;
     const { target } = app.doc;
     const { used } = app.keypoints;
-    if (!target || !used.some(({ state }) => state !== 'placed')) {
-      this.next = -1;
-      app.changed('doc');
-      return;
-    }
+    if (!target || used.every(({ state }) => state === 'placed')) return;
     const points = used.map(({ source }) => source);
     const known = used.map(({ state, target: vertex }) => (state === 'placed' ? vertex : -1));
     const answer = await app.work.run('pairs', 'looking for the points', () => app.engine.call('propose', { points, known }));
     if (!answer || app.doc.target !== target) return;
     const found = new Map(points.map((source, i) => [source, { target: answer.targets[i], confidence: answer.confidences[i] }]));
-    this.next = answer.next ?? -1;
     app.amend({ points: app.doc.points.map((point) => proposed(point, found.get(point.source))) });
   }
 }
@@ -221,5 +217,6 @@ const placed = (point) => Object.freeze({ ...point, state: 'placed', confidence:
 /** A point with what is proposed for it, unless that was decided by hand. */
 function proposed(point, proposal) {
   if (!proposal || point.state === 'placed' || point.state === 'none') return point;
-  return Object.freeze({ ...point, target: proposal.target, state: 'proposed', confidence: proposal.confidence });
+  const target = point.confidence === null ? point.target : proposal.target;
+  return Object.freeze({ ...point, target, state: 'proposed', confidence: proposal.confidence });
 }

@@ -309,3 +309,26 @@ fn the_gallery_opens_pairs_that_move() {
         page.screenshot(&format!("gallery-{source}-{target}"));
     }
 }
+
+#[test]
+#[ignore = "drives the built page in Chromium: run by `cargo xtask test`"]
+fn what_to_click_next_is_known_a_step_back_and_in_a_link() {
+    let mut page = proposed(Backend::WebGl2, Screen::Still);
+    let known = "JSON.stringify([sinew.state().next, sinew.app.doc.points])";
+    let before = page.evaluate(known);
+    let next = page.state()["next"].as_u64().expect("one of the points is the least sure");
+    assert_eq!(page.evaluate("document.querySelector('.points .next .pin-dot').innerText"), (next + 1).to_string());
+    page.press("a");
+    page.wait_until(&format!("sinew.state().tally.placed === 8 && {IDLE}"), PATIENT);
+    assert_eq!(page.state()["next"], -1);
+    page.press_with_control("z");
+    page.wait_until(&format!("sinew.state().tally.proposed === 8 && {IDLE}"), PATIENT);
+    assert_eq!(page.evaluate(known), before, "a step back");
+    page.evaluate("sinew.app.changed('link')");
+    page.rest(0.8);
+    let hash = page.evaluate("location.hash").as_str().unwrap_or_default().to_owned();
+    page.go(&format!("?again{hash}"));
+    let sure = "sinew.app.doc.points.every(({ confidence }) => confidence !== null)";
+    page.wait_until(&format!("location.search === '?again' && sinew.state().moves && {sure} && {IDLE}"), PATIENT);
+    assert_eq!(page.evaluate(known), before, "in a link");
+}

@@ -45,7 +45,7 @@ function row(app, side, point, index) {
 
 function words(point, next) {
   if (next) return point.state === 'proposed' ? 'proposed: click next' : 'click next';
-  return point.state === 'proposed' ? `${STATES.proposed}, ${percent(point.confidence, 0)} sure` : STATES[point.state];
+  return point.state === 'proposed' && point.confidence !== null ? `${STATES.proposed}, ${percent(point.confidence, 0)} sure` : STATES[point.state];
 }
 
 /** The number of a point in its colour. */
