@@ -88,7 +88,10 @@ export class Parts {
     }
     const answer = await app.work.run('source', 'cutting the tree', (progress) =>
       app.engine.call('parts', { parameters, parts: count }, { progress }));
-    if (answer && app.result === result) Object.assign(result, pickParts(answer));
+    if (!answer || app.result !== result) return;
+    Object.assign(result, pickParts(answer));
+    // A link may ask for more than the finest parts, or for fewer than there are pieces: what is shown is what there is.
+    if (app.wanted === count && count !== result.parts.length) app.amend({ wanted: result.parts.length });
   }
 
   /** The open sequence as a skin with a joint for each part: `{bytes, error, rms}`, over the diagonal. */

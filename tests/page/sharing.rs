@@ -251,3 +251,15 @@ fn a_video_is_recorded_or_cancelled() {
     let state = page.state();
     assert_eq!((&state["playing"], &state["time"]), (&json!(false), &json!(2)), "one goes on where one was: {state}");
 }
+
+#[test]
+#[ignore = "drives the built page in Chromium: run by `cargo xtask test`"]
+fn a_link_that_asks_for_too_many_parts_says_how_many_there_are() {
+    let mut page = opened(Backend::WebGl2, Screen::Still, "#v1;zoo=snake;faces=3000;parts=100000");
+    page.wait_until("sinew.state().parts > 48 && location.hash.includes(`parts=${sinew.state().parts}`)", 20.0);
+    let shown =
+        "[document.querySelector('#control-number-of-parts').value, document.querySelector('.legend output').value]";
+    let parts = page.state()["parts"].to_string();
+    assert_eq!(page.evaluate(shown), json!([parts, parts]));
+    assert_eq!(page.state()["undo"], 0, "that is no step of its own");
+}
