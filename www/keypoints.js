@@ -15,6 +15,7 @@ export const MOST_POINTS = 60;
  * @property {number|null} target vertex
  * @property {'missing'|'none'|'proposed'|'placed'} state `none`: taken away by hand, so not to be proposed
  * @property {number|null} confidence of a proposal; null: not known yet
+ * @property {boolean} [crowded] `none` because the target has too few vertices
  * @property {boolean} [given] placed, but not by the visitor: it came with the creatures
  */
 

@@ -29,8 +29,8 @@ export function writePoints(app, fields, own = false) {
   if (selected >= 0) fields.point = selected + 1;
 }
 
-function written({ target, state }) {
-  if (state === 'none') return AWAY;
+function written({ target, state, crowded }) {
+  if (state === 'none' && !crowded) return AWAY;
   return target == null ? '' : `${state === 'proposed' ? PROPOSED : ''}${target}`;
 }
 

@@ -116,7 +116,7 @@ export class Target {
   get wanted() {
     const { app, next } = this;
     if (app.selected >= 0) return app.selected;
-    return next >= 0 ? next : app.keypoints.used.findIndex(({ state }) => state !== 'placed');
+    return next >= 0 ? next : app.keypoints.used.findIndex(({ state, crowded }) => state !== 'placed' && !crowded);
   }
 
   /** Puts a point where a vertex of the target is. */
@@ -124,9 +124,10 @@ export class Target {
     const { app } = this;
     const { points, count } = app.doc;
     if (!points[index]) return;
-    if (points.some(({ target, state }, i) => i !== index && i < count && state === 'placed' && target === vertex)) return;
+    const here = (target) => target != null && this.#spot(target) === this.#spot(vertex);
+    if (points.some(({ target, state }, i) => i !== index && i < count && state === 'placed' && here(target))) return;
     // Where another one was only proposed, or is not in use, that one is looked for elsewhere.
-    const free = points.map((point) => (point.target === vertex ? fresh(point.source) : point));
+    const free = points.map((point) => (here(point.target) ? fresh(point.source) : point));
     app.edit({ points: free.with(index, Object.freeze({ source: points[index].source, target: vertex, state: 'placed', confidence: 1 })) }, mark);
   }
 
@@ -203,20 +204,45 @@ export class Target {
     const { target } = app.doc;
     const { used } = app.keypoints;
     if (!target || used.every(({ state }) => state === 'placed')) return;
-    const points = used.map(({ source }) => source);
+    const sources = used.map(({ source }) => source);
     const known = used.map(({ state, target: vertex }) => (state === 'placed' ? vertex : -1));
-    const answer = await app.work.run('pairs', 'looking for the points', () => app.engine.call('propose', { points, known }));
+    const answer = await app.work.run('pairs', 'looking for the points', () => app.engine.call('propose', { points: sources, known }));
     if (!answer || app.doc.target !== target) return;
-    const found = new Map(points.map((source, i) => [source, { target: answer.targets[i], confidence: answer.confidences[i] }]));
-    app.amend({ points: app.doc.points.map((point) => proposed(point, found.get(point.source))) });
+    const found = new Map(sources.map((source, i) => [source, { target: answer.targets[i], confidence: answer.confidences[i] }]));
+    const points = app.doc.points.map((point) => proposed(point, found.get(point.source)));
+    app.amend({ points: this.#apart(points) });
+  }
+
+  /** Where a vertex lies: others may lie there as well. */
+  #spot(vertex) {
+    return this.sequence.reference.subarray(3 * vertex, 3 * vertex + 3).join();
+  }
+
+  /** No two points lie in one place: those in use come first, of them those that were placed, then the surest. */
+  #apart(points) {
+    const { count } = this.app.doc;
+    const rank = (i) => (i >= count ? -1 : points[i].state === 'placed' ? 2 : points[i].confidence);
+    const taken = new Set();
+    const apart = [...points];
+    for (const i of [...points.keys()].sort((a, b) => rank(b) - rank(a))) {
+      const { source, target } = points[i];
+      if (target == null) continue;
+      const spot = this.#spot(target);
+      if (taken.has(spot)) apart[i] = i < count ? crowded(source) : fresh(source);
+      taken.add(spot);
+    }
+    return apart;
   }
 }
+
+/** A point for which the target has no vertex left. */
+const crowded = (source) => Object.freeze({ ...fresh(source), state: 'none', crowded: true });
 
 const placed = (point) => Object.freeze({ ...point, state: 'placed', confidence: 1 });
 
 /** A point with what is proposed for it, unless that was decided by hand. */
 function proposed(point, proposal) {
-  if (!proposal || point.state === 'placed' || point.state === 'none') return point;
+  if (!proposal || point.state === 'placed' || (point.state === 'none' && !point.crowded)) return point;
   const target = point.confidence === null ? point.target : proposal.target;
-  return Object.freeze({ ...point, target, state: 'proposed', confidence: proposal.confidence });
+  return Object.freeze({ source: point.source, target, state: 'proposed', confidence: proposal.confidence });
 }

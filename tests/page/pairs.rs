@@ -332,3 +332,24 @@ fn what_to_click_next_is_known_a_step_back_and_in_a_link() {
     page.wait_until(&format!("location.search === '?again' && sinew.state().moves && {sure} && {IDLE}"), PATIENT);
     assert_eq!(page.evaluate(known), before, "in a link");
 }
+
+#[test]
+#[ignore = "drives the built page in Chromium: run by `cargo xtask test`"]
+fn no_two_points_share_a_place() {
+    let link = "#v1;zoo=snake;faces=3000;poses=8;step=target;points=12,407,900,1300,1400";
+    let mut page = opened(Backend::WebGl2, Screen::Still, link);
+    // Two triangles on three places: their vertices are not joined.
+    let triangles = "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 0\nv 0 1 0\nv 1 0 0\nf 1 2 3\nf 4 5 6\n";
+    page.drop_files(&[("triangles.obj", triangles.as_bytes())]);
+    page.wait_until(&format!("sinew.state().target && sinew.state().moves?.pairs === 3 && {IDLE}"), PATIENT);
+    let state = page.state();
+    assert_eq!((&state["tally"]["proposed"], &state["tally"]["missing"]), (&3.into(), &2.into()), "{state}");
+    assert_eq!(state["error"], Value::Null);
+    let said =
+        page.evaluate("document.querySelector('#panel .step:has(.points li[data-state=none])').innerText").to_string();
+    assert!(said.contains("no place for 2 points") && said.contains("no vertex left for it"), "{said}");
+    // One that is taken away makes room.
+    page.evaluate("sinew.app.target.remove(sinew.app.doc.points.findIndex(({ target }) => target != null))");
+    page.wait_until(&format!("sinew.state().tally.proposed === 3 && {IDLE}"), PATIENT);
+    assert_eq!(page.evaluate("sinew.app.doc.points.filter(({ crowded }) => crowded).length"), 1);
+}

@@ -44,6 +44,7 @@ function row(app, side, point, index) {
 }
 
 function words(point, next) {
+  if (point.crowded) return 'no vertex left for it';
   if (next) return point.state === 'proposed' ? 'proposed: click next' : 'click next';
   return point.state === 'proposed' && point.confidence !== null ? `${STATES.proposed}, ${percent(point.confidence, 0)} sure` : STATES[point.state];
 }

@@ -3,7 +3,7 @@ import { facts, fold } from '../controls.js';
 import { doctor, untold } from '../doctor.js';
 import { h, show } from '../dom.js';
 import { chosen } from '../files.js';
-import { count, title } from '../format.js';
+import { count, plural, title } from '../format.js';
 import { lesson } from '../lesson.js';
 import { upright } from '../upright.js';
 import { pairGallery } from './gallery.js';
@@ -50,7 +50,9 @@ function build(app) {
     }
     const { placed, proposed, missing } = app.target.tally;
     tally.textContent = [placed && `${placed} placed`, proposed && `${proposed} proposed`, missing && `${missing} missing`].filter(Boolean).join(' · ');
-    words.textContent = missing + proposed === 0 ? 'Every point has its place. Drag one to move it: the motion follows.'
+    const crowded = app.keypoints.used.filter((point) => point.crowded).length;
+    words.textContent = crowded ? `The target has too few vertices: there is no place for ${plural(crowded, 'point')}.`
+      : missing + proposed === 0 ? 'Every point has its place. Drag one to move it: the motion follows.'
       : 'Click on the target to place a point, drag to move it. What is proposed is right or wrong: accept it, or drag it.';
     acceptAll.hidden = !proposed;
     again.hidden = placed === app.doc.count;
@@ -87,5 +89,3 @@ function fileButton(app) {
 /** A creature has a name, a file its own. */
 export const nameOf = ({ app: { doc }, sequence }) =>
   (doc.target.source.kind === 'zoo' ? title(sequence.name) : sequence.name.replace(/\.(glb|gltf|obj|off|ply|stl|zip)$/i, ''));
-
-export const describeTarget = (app) => (app.doc.target ? nameOf(app.target) : plural(0, 'target'));
