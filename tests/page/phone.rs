@@ -53,6 +53,17 @@ fn everything_has_its_place_on_a_phone() {
     assert_eq!(page.evaluate("panel.scrollTop"), 0, "a step is read from its beginning");
     page.click("#panel .icon-button");
     page.wait_until("!sinew.state().panel", 2.0);
+    // With letters of twice the size the names of the steps stay apart, the bold one too.
+    page.evaluate("document.documentElement.style.fontSize = '200%', sinew.app.setStep('keypoints')");
+    let narrowest = "(() => { const range = document.createRange(), ends = [...document.querySelectorAll('.step-title')].map((title) => {
+        range.selectNodeContents(title); const { left, right } = range.getBoundingClientRect(); return [left, right]; });
+        return Math.min(...ends.slice(1).map(([left], i) => left - ends[i][1])); })()";
+    let gap = page.evaluate(narrowest);
+    assert!(gap.as_f64().is_some_and(|gap| gap > 8.0), "{gap} pixels between two steps");
+    let last = "rail.scrollLeft = 9999, document.querySelector('.panel-opener').getBoundingClientRect().left
+        - document.querySelector('#step-export').getBoundingClientRect().right";
+    let room = page.evaluate(last);
+    assert!(room.as_f64().is_some_and(|room| room >= 0.0), "the last step is {room} pixels clear of the button");
 }
 
 #[test]
