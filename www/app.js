@@ -11,7 +11,7 @@
 import { BLANK } from './doc.js';
 import { History, OPENING } from './history.js';
 import { KeyPoints, MOST_POINTS } from './keypoints.js';
-import { Opener } from './opener.js';
+import { Opener, onlyTurned } from './opener.js';
 import { Parts } from './parts.js';
 import { placeIn, viewNow } from './stages.js';
 import { PARTS_VIEW, stepNamed } from './steps/index.js';
@@ -172,9 +172,21 @@ export class App extends EventTarget {
     const { open, changes, wanted } = this.doc;
     // The engine has to know it before anything is asked about it.
     if (before.open !== open) this.engine.call('restore', { kept: open.sequence }, { own: true }).catch(() => {});
-    this.react(before);
+    const react = () => this.react(before);
+    if (onlyTurned(before.open, open)) this.stay(react);
+    else react();
     if (before.open !== open || before.changes !== changes) this.parts.segment();
     else if (before.wanted !== wanted && this.result) this.parts.cut();
+  }
+
+  /** Has something happen to the figure that is open, of which all that is looked at stays as it is. */
+  stay(act) {
+    const { places, face, selected, timeline } = this;
+    const { moment } = timeline;
+    act();
+    Object.assign(this, { places, face });
+    this.select(selected);
+    timeline.moment = moment;
   }
 
   /** Sees to all that follows from a change. @param {import('./doc.js').Doc} before */

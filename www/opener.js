@@ -103,13 +103,8 @@ export class Opener {
     if (turned) {
       // Errors and weights are the same either way up; the maps of a fit are not, and are found again.
       const run = before.run && { ...before.run, rounds: null };
-      const { places, face, selected, timeline } = app;
-      const { moment } = timeline;
-      app.edit({ open, run, points: unproposed(before.points) });
+      app.stay(() => app.edit({ open, run, points: unproposed(before.points) }));
       this.#makeRoom();
-      Object.assign(app, { places, face });
-      app.select(selected);
-      timeline.moment = moment;
       return;
     }
     // A target stays: what is new is to move it as well. So do points in which there is work, where they mean the same.
@@ -148,6 +143,12 @@ export class Opener {
       app.say(`${back.open.sequence.name} was closed. Undo brings it back${placed ? ' with its points' : ''}.`, 'news');
     } else if (placed) app.say('The points that were placed do not belong to this mesh. Undo brings them back.', 'news');
   }
+}
+
+/** Whether they are one figure, of which other axes are up. @param {Open|null} a @param {Open|null} b */
+export function onlyTurned(a, b) {
+  const rest = (figure) => JSON.stringify({ ...figure.source.options, up: null });
+  return Boolean(a?.source.files) && a.source.files === b?.source.files && rest(a) === rest(b);
 }
 
 /** Whether a vertex of one is the same vertex of the other. */

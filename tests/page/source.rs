@@ -398,6 +398,9 @@ fn who_lies_is_raised_and_nothing_is_lost() {
     page.evaluate("sinew.app.undo()");
     page.wait_until(&format!("sinew.app.sequence.up === 'y' && sinew.state().moves && {STILL}"), 60.0);
     assert_eq!((page.evaluate(PLACES), ratios(&mut page)), (places, lying));
+    for what in ["time", "playing", "selected", "parts"] {
+        assert_eq!(page.state()[what], before[what], "{what}");
+    }
 }
 
 #[test]
