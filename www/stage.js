@@ -66,6 +66,9 @@ export class Stage extends EventTarget {
     this.wanted = 0;
     this.shown = -1;
     this.waiting = [];
+    /** The count since when it is the mesh that is open, and since when it was the last one of which it was told that it is seen. */
+    this.opened = 0;
+    this.told = 0;
     /** What is shown. `skin` moves `mesh` instead of its poses; `camera` is null until the visitor moves it. */
     this.kept = { mesh: null, skin: null, time: -1, loop: false, paint: [['paint_clay']], boundaries: true, wireframe: false,
       contours: true, marks: new Map(), pins: [], camera: null, turn: null, dark: false, insets: [0, 0, 0, 0], room: [] };
@@ -211,6 +214,7 @@ export class Stage extends EventTarget {
     this.#flow(now);
     const underWay = this.view.under_way();
     while (this.waiting.length > underWay) this.shown = this.waiting.shift();
+    this.#tell();
     return this.pace.allows(now, underWay);
   }
 
@@ -220,6 +224,14 @@ export class Stage extends EventTarget {
     this.#draw(now);
     // What was asked for may be what was there.
     if (!this.waiting.length && !this.view.stale()) this.shown = this.wanted;
+    this.#tell();
+  }
+
+  /** Says of a mesh, once, that it is on the screen. */
+  #tell() {
+    if (this.told === this.opened || this.behind) return;
+    this.told = this.opened;
+    this.dispatchEvent(new Event('shown'));
   }
 
   /** Draws if anything has changed. Without a change nothing is spent. */
@@ -233,6 +245,11 @@ export class Stage extends EventTarget {
   /** Whether all that was asked to be shown is on the screen; time and camera may have moved on. */
   get drawn() {
     return !!this.view && this.visible && this.shown === this.wanted && this.flowing == null;
+  }
+
+  /** Whether the mesh that is seen is the one before. */
+  get behind() {
+    return !!this.view && this.shown < this.opened;
   }
 
   /** Draws as simply as the pace asks, or with all there is. */
@@ -320,6 +337,7 @@ export class Stage extends EventTarget {
       view.frame();
       view.set_time(-1);
     });
+    this.opened = this.wanted;
   }
 
   /** What moves the mesh instead of its poses; null: its poses. */

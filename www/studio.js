@@ -32,6 +32,7 @@ export class Studio {
     this.seam = seam;
     this.make = make;
     this.captions = hosts.map((host) => h('p', { class: 'caption small', hidden: true }));
+    this.names = ['', ''];
     /** Where a figure may lie on its side, because its files do not say what is up. */
     this.corners = hosts.map(() => h('div', { class: 'corner small' }));
     hosts.forEach((host, i) => host.append(this.captions[i], this.corners[i]));
@@ -39,7 +40,7 @@ export class Studio {
     this.unlink = null;
     /** What a phone shows: `both`, `source` or `target`. */
     this.shown = 'both';
-    pins(app, 'source', app.stage, hosts[0]);
+    this.#furnish('source', app.stage);
     app.on('target step', () => this.#arrange());
     app.on('source', () => this.#name());
     app.on('motion', () => this.#move());
@@ -71,7 +72,7 @@ export class Studio {
       this.hosts[1].hidden = false;
       app.second = this.make(this.hosts[1]);
       app.second.dark = app.stage.kept.dark;
-      pins(app, 'target', app.second, this.hosts[1]);
+      this.#furnish('target', app.second);
       app.changed('second');
     }
     if (sequence && sequence !== this.open) {
@@ -84,6 +85,12 @@ export class Studio {
     this.#layOut();
     this.#name();
     app.paint();
+  }
+
+  /** Gives a picture its pins and its name. @param {'source'|'target'} side */
+  #furnish(side, stage) {
+    pins(this.app, side, stage, this.hosts[side === 'source' ? 0 : 1]);
+    stage.addEventListener('shown', () => this.#caption());
   }
 
   /** The target moves as the engine says, and stands still where it says nothing. */
@@ -117,22 +124,27 @@ export class Studio {
 
   #name() {
     const { app } = this;
-    const names = [app.sequence, app.target.sequence].map((sequence) => (sequence ? title(sequence.name.replace(/\.[^.]*$/, '')) : ''));
-    this.captions.forEach((caption, i) => {
-      caption.hidden = !this.two;
-      caption.textContent = names[i];
-    });
+    this.names = [app.sequence, app.target.sequence].map((sequence) => (sequence ? title(sequence.name.replace(/\.[^.]*$/, '')) : ''));
+    for (const caption of this.captions) caption.hidden = !this.two;
+    this.#caption();
     [app.doc.open, app.doc.target].forEach((figure, i) =>
       show(this.corners[i], figure && (!isGltf(figure) || figure.source.options.up) && upright(app, i ? 'target' : 'source', 'picture')));
-    this.#showSeam(names);
+    this.#showSeam();
   }
 
-  #showSeam(names = this.captions.map((caption) => caption.textContent)) {
+  /** A figure is named once it is seen: where drawing is slow, the one before it is there a while longer. */
+  #caption() {
+    [this.app.stage, this.app.second].forEach((stage, i) => {
+      if (!stage?.behind) this.captions[i].textContent = this.names[i];
+    });
+  }
+
+  #showSeam() {
     this.seam.hidden = !this.two;
     if (!this.two) return;
     const label = this.linked ? 'The cameras move together: let each go its way' : 'Let the cameras move together';
     show(this.seam,
-      NARROW.matches && choice('Figure', [['source', names[0]], ['both', 'Both'], ['target', names[1]]], this.shown, (value) => {
+      NARROW.matches && choice('Figure', [['source', this.names[0]], ['both', 'Both'], ['target', this.names[1]]], this.shown, (value) => {
         this.shown = value;
         this.#layOut();
       }, 'segments'),

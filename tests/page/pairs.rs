@@ -294,19 +294,34 @@ fn a_search_finds_as_many_points_as_were_in_use() {
     assert_eq!(page.evaluate("sinew.app.doc.search.points"), Value::Null, "a rule takes the place of a number");
 }
 
+/// Notes the target's name under its picture when another target is open but not seen yet, and when it is first seen.
+const FORMER: &str = "(() => { const { app } = sinew; window.captions = [];
+    const note = (i) => (captions[i] ??= document.querySelector('#second .caption').textContent || null);
+    app.addEventListener('target', function hear() {
+        if (!app.target.sequence) return;
+        app.removeEventListener('target', hear);
+        queueMicrotask(() => { note(0); app.second.addEventListener('shown', () => note(1), { once: true }); });
+    }); })()";
+
 #[test]
 #[ignore = "drives the built page in Chromium: run by `cargo xtask test`"]
 fn the_gallery_opens_pairs_that_move() {
     let mut page = opened(Backend::WebGl2, Screen::Small, "#v1;zoo=snake;faces=3000");
     page.evaluate("Object.assign(sinew.app.about.recipe, { faces: 4000, poses: 12 }); undefined");
     for (source, target) in [("snake", "hand"), ("person", "dinosaur"), ("horse", "camel")] {
-        page.evaluate(&format!("document.querySelector('#pair-{source}-{target}').click()"));
+        let was = page.evaluate("sinew.app.target.sequence?.name ?? null");
+        page.evaluate(&format!("{FORMER}; document.querySelector('#pair-{source}-{target}').click()"));
         let open = format!("sinew.state().target?.name === '{target}' && sinew.state().source.name === '{source}'");
         page.wait_until(&format!("{open} && sinew.state().moves && sinew.state().step === 'transfer'"), PATIENT);
         let state = page.state();
         assert_eq!((&state["error"], &state["tally"]["missing"]), (&Value::Null, &0.into()), "{state}");
         page.rest(1.0);
         page.screenshot(&format!("gallery-{source}-{target}"));
+        let named = page.evaluate("captions");
+        let before = was.as_str().unwrap_or(target);
+        for (name, wanted) in [(&named[0], before), (&named[1], target)] {
+            assert_eq!(name.as_str().map(str::to_lowercase).as_deref(), Some(wanted), "{named}");
+        }
     }
 }
 
