@@ -176,7 +176,10 @@ export class Stage extends EventTarget {
    * the visitor would see nothing until the next frame, which may be long in coming.
    */
   #fit() {
-    if (!this.#size()) return;
+    if (this.#size()) this.#drawAgain();
+  }
+
+  #drawAgain() {
     this.wanted++;
     this.#draw(performance.now());
   }
@@ -194,8 +197,10 @@ export class Stage extends EventTarget {
   #resize() {
     this.unfit = this.view?.under_way() > 1;
     this.canvas?.toggleAttribute('data-unfit', this.unfit);
-    if (!this.unfit) this.#fit();
+    const other = !this.unfit && this.#size();
+    // From where another size was seen, this one might not be.
     this.#frameUnlessMoved();
+    if (other) this.#drawAgain();
   }
 
   /** Every picture hears of the time before any is drawn, and none is drawn before all can be. */

@@ -323,6 +323,18 @@ fn the_gallery_opens_pairs_that_move() {
             assert_eq!(name.as_str().map(str::to_lowercase).as_deref(), Some(wanted), "{named}");
         }
     }
+    // One figure in the room of two is looked at from where it is to be seen, from the first frame on.
+    page.evaluate(
+        "{ const { stage } = sinew.app, { view } = stage; window.seen = [];
+        view.render = () => { const drew = Object.getPrototypeOf(view).render.call(view);
+            if (drew) seen.push([stage.canvas.width, view.camera()[5]]); return drew; };
+        sinew.app.setStep('source'); }",
+    );
+    page.rest(2.0);
+    let late = page.evaluate(
+        "seen.filter(([width, distance]) => width === seen.at(-1)[0] && Math.abs(distance - seen.at(-1)[1]) > 0.1)",
+    );
+    assert_eq!(late, serde_json::json!([]));
 }
 
 #[test]
