@@ -315,6 +315,7 @@ fn the_gallery_opens_pairs_that_move() {
         page.wait_until(&format!("{open} && sinew.state().moves && sinew.state().step === 'transfer'"), PATIENT);
         let state = page.state();
         assert_eq!((&state["error"], &state["tally"]["missing"]), (&Value::Null, &0.into()), "{state}");
+        page.wait_until("captions[1]", PATIENT);
         page.rest(1.0);
         page.screenshot(&format!("gallery-{source}-{target}"));
         let named = page.evaluate("captions");
@@ -324,6 +325,8 @@ fn the_gallery_opens_pairs_that_move() {
         }
     }
     // One figure in the room of two is looked at from where it is to be seen, from the first frame on.
+    page.resize(Screen::Desktop);
+    page.rest(1.0);
     page.evaluate(
         "{ const { stage } = sinew.app, { view } = stage; window.seen = [];
         view.render = () => { const drew = Object.getPrototypeOf(view).render.call(view);
@@ -332,7 +335,7 @@ fn the_gallery_opens_pairs_that_move() {
     );
     page.rest(2.0);
     let late = page.evaluate(
-        "seen.filter(([width, distance]) => width === seen.at(-1)[0] && Math.abs(distance - seen.at(-1)[1]) > 0.1)",
+        "seen.filter(([width, distance]) => width === seen.at(-1)[0] && Math.abs(distance - seen.at(-1)[1]) > 0.2)",
     );
     assert_eq!(late, serde_json::json!([]));
 }
