@@ -2,6 +2,7 @@
  * What can be undone, as one small immutable object: all else on the page follows from it or is only looked at. Big things
  * in it are only referred to.
  */
+import { title } from './format.js';
 
 /**
  * @typedef {object} Open
@@ -24,6 +25,13 @@
 
 /** @type {Doc} */
 export const BLANK = { open: null, changes: {}, wanted: null, search: {}, run: null, points: [], count: 0, target: null, method: '' };
+
+/** A creature has a name, a file its own. @param {Open|null} figure */
+export function nameOf(figure) {
+  if (!figure) return '';
+  const { source, sequence: { name } } = figure;
+  return source.kind === 'zoo' ? title(name) : name.replace(/\.(glb|gltf|obj|off|ply|stl|zip)$/i, '');
+}
 
 /** Whether a figure was opened from files of the visitor's own. @param {Open|null} figure */
 export const isOwn = (figure) => figure?.source.kind === 'files';

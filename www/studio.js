@@ -3,9 +3,9 @@
  * side or, where that makes both larger, below it. On a phone the two can be switched.
  */
 import { choice } from './controls.js';
+import { nameOf } from './doc.js';
 import { h, iconButton, show } from './dom.js';
 import { isGltf } from './files.js';
-import { title } from './format.js';
 import { pins } from './pins.js';
 import { NARROW } from './screens.js';
 import { link } from './stage.js';
@@ -124,7 +124,7 @@ export class Studio {
 
   #name() {
     const { app } = this;
-    this.names = [app.sequence, app.target.sequence].map((sequence) => (sequence ? title(sequence.name.replace(/\.[^.]*$/, '')) : ''));
+    this.names = [app.doc.open, app.doc.target].map(nameOf);
     for (const caption of this.captions) caption.hidden = !this.two;
     this.#caption();
     [app.doc.open, app.doc.target].forEach((figure, i) =>

@@ -1,5 +1,6 @@
 /** The step Source: what is open, and how to open something else. */
 import { choice, facts, fold, select, toggle } from '../controls.js';
+import { nameOf } from '../doc.js';
 import { doctor, untold, worthALook } from '../doctor.js';
 import { h, show } from '../dom.js';
 import { chosen, isGltf } from '../files.js';
@@ -15,7 +16,7 @@ export const sourceStep = {
   summary(app) {
     if (!app.sequence) return '';
     const notes = worthALook(app.sequence);
-    return notes ? `${nameOf(app)} · ${plural(notes, 'note')}` : nameOf(app);
+    return notes ? `${nameOf(app.doc.open)} · ${plural(notes, 'note')}` : nameOf(app.doc.open);
   },
   build,
 };
@@ -36,7 +37,7 @@ function build(app) {
       source?.kind === 'zoo' ? source.recipe.name : null, (name) => app.opener.openCreature({ name })));
     if (!sequence) return;
     show(current,
-      h('p', { class: 'name' }, nameOf(app)),
+      h('p', { class: 'name' }, nameOf(app.doc.open)),
       facts([
         ['Vertices', count(sequence.sizes.vertices)],
         ['Faces', count(sequence.sizes.faces)],
@@ -94,7 +95,3 @@ function animationOptions(app) {
     select('Reference', REFERENCES, options.reference, (reference) => app.opener.reopen({ reference })),
     toggle('Weld seams', options.weld, (weld) => app.opener.reopen({ weld }), 'Join vertices that agree in every pose'));
 }
-
-/** A creature has a name, a file its own. */
-const nameOf = ({ source, sequence }) =>
-  (source.kind === 'zoo' ? title(sequence.name) : sequence.name.replace(/\.(glb|gltf|obj|off|ply|stl|zip)$/i, ''));

@@ -1,5 +1,6 @@
 /** The step Target: another figure, and where the key points lie on it. */
 import { facts, fold } from '../controls.js';
+import { nameOf } from '../doc.js';
 import { doctor, untold } from '../doctor.js';
 import { h, show } from '../dom.js';
 import { chosen } from '../files.js';
@@ -20,7 +21,7 @@ export const targetStep = {
   points: true,
   pair: true,
   enter: (app) => app.keypoints.begin(),
-  summary: ({ target }) => (target.sequence ? nameOf(target) : ''),
+  summary: ({ doc }) => nameOf(doc.target),
   build,
 };
 
@@ -42,7 +43,7 @@ function build(app) {
     now.hidden = !sequence;
     if (sequence) {
       show(now,
-        h('div', { class: 'row' }, h('p', { class: 'name' }, nameOf(app.target)),
+        h('div', { class: 'row' }, h('p', { class: 'name' }, nameOf(app.doc.target)),
           h('button', { type: 'button', class: 'text-button', id: 'target-away', on: { click: () => app.target.close() } }, 'Put away')),
         facts([['Vertices', count(sequence.sizes.vertices)], ['Faces', count(sequence.sizes.faces)]]),
         ...warnings(app, untold(sequence.warnings).filter(({ code }) => code !== 'no-animation'), app.second),
@@ -85,7 +86,3 @@ function fileButton(app) {
   } });
   return h('div', { class: 'file' }, input, h('label', { for: 'target-files', class: 'button' }, 'Open a target'));
 }
-
-/** A creature has a name, a file its own. */
-export const nameOf = ({ app: { doc }, sequence }) =>
-  (doc.target.source.kind === 'zoo' ? title(sequence.name) : sequence.name.replace(/\.(glb|gltf|obj|off|ply|stl|zip)$/i, ''));
