@@ -40,8 +40,10 @@ export function placesOf(fields) {
   const valid = sources.every((vertex) => Number.isInteger(vertex) && vertex >= 0) && new Set(sources).size === sources.length;
   if (!valid) return { points: [], selected: -1 };
   const pairs = (fields.pairs ?? '').split(',');
+  const points = sources.slice(0, MOST_POINTS).map((vertex, i) => read(vertex, pairs[i] ?? ''));
   return {
-    points: sources.slice(0, MOST_POINTS).map((vertex, i) => read(vertex, pairs[i] ?? '')),
+    // Of two in one place the first is believed.
+    points: points.map((point, i) => (point.target === null || points.findIndex(({ target }) => target === point.target) === i ? point : fresh(point.source))),
     landmarks: fields.pairs === LANDMARKS,
     selected: Number.isInteger(Number(fields.point)) ? Number(fields.point) - 1 : -1,
   };

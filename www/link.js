@@ -16,6 +16,10 @@ const WRITE_EVERY = 400;
 /** The hash holds the creature's recipe under these names. */
 const RECIPE = ['faces', 'poses', 'exact', 'motion', 'size', 'build', 'head', 'neck', 'legs', 'arms', 'tail'];
 
+/** Of these there are whole numbers, from one to another. */
+const COUNTS = { faces: [1_000, 1_000_000], poses: [1, 240] };
+const within = (value, [low, high]) => Math.round(Math.min(Math.max(value, low), high));
+
 /** What is named by fields of a link, in words. */
 const CALLED = { zoo: 'a creature', target: 'a target', step: 'a step', motion: 'a motion' };
 
@@ -95,7 +99,7 @@ export function recipeOf(fields, { creatures, motions, recipe }, [key, prefix] =
   for (const name of RECIPE) {
     const text = fields[prefix + name];
     const value = typeof recipe[name] === 'string' ? text : parse(text);
-    if (typeof value === typeof recipe[name]) wanted[name] = value;
+    if (typeof value === typeof recipe[name]) wanted[name] = COUNTS[name] ? within(value, COUNTS[name]) : value;
   }
   if (!motions[creatures.indexOf(wanted.name)].includes(wanted.motion)) delete wanted.motion;
   return wanted;

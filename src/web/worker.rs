@@ -113,10 +113,7 @@ impl Engine {
 
     /// Makes a creature from a [`Recipe`] in its serde form; replies as [`Engine::open`] does.
     pub fn zoo(&mut self, recipe: JsValue) -> Reply {
-        let recipe: Recipe = parsed(recipe)?;
-        let creature =
-            zoo::make(&recipe).ok_or_else(|| sentence(format!("There is no creature called “{}”.", recipe.name)))?;
-        let sequence = rounded(&creature.sequence)?;
+        let sequence = rounded(&pair::creature(recipe)?.sequence)?;
         let reply = describe(&sequence, None)?;
         self.replace(sequence);
         Ok(reply)

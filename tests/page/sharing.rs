@@ -58,6 +58,16 @@ fn odd_and_old_links_open_something() {
         page.wait_until(&format!("location.search === '?{}' && {SETTLED}", hash.len()), 30.0);
         assert_eq!(page.state()["error"], Value::Null, "{hash}");
     }
+    // What is shown is what is said of it, and two points are not in one place.
+    page.go("?bounds#v1;zoo=snake;faces=-5.5;poses=9999;target=snake;target.faces=1e3;points=1,50,100;pairs=~7,~7,7");
+    let distinct = "new Set(sinew.app.doc.points.map(({ target }) => target)).size === 3";
+    page.wait_until(
+        &format!("location.search === '?bounds' && sinew.state().moves?.pairs === 3 && {distinct} && {IDLE}"),
+        60.0,
+    );
+    let (state, recipe) =
+        (page.state(), page.evaluate("[sinew.app.source.recipe.faces, sinew.app.source.recipe.poses]"));
+    assert_eq!((&state["error"], recipe, &state["source"]["poses"]), (&Value::Null, json!([1000, 240]), &json!(240)));
     page.go("?unknown#v1;zoo=nothing;target=zzz;t=99999");
     page.wait_until(&format!("location.search === '?unknown' && {SETTLED}"), 30.0);
     let said = page.evaluate("sinew.app.notice?.text").to_string();

@@ -119,7 +119,9 @@ impl Engine {
     }
 }
 
-fn creature(recipe: JsValue) -> Result<zoo::Creature, JsValue> {
+pub(super) fn creature(recipe: JsValue) -> Result<zoo::Creature, JsValue> {
     let recipe: Recipe = parsed(recipe)?;
-    zoo::make(&recipe).ok_or_else(|| sentence(format!("There is no creature called “{}”.", recipe.name)))
+    let none =
+        || sentence(format!("There is no “{}” of {} faces; there may be one of fewer.", recipe.name, recipe.faces));
+    zoo::make(&recipe).ok_or_else(none)
 }
