@@ -6,7 +6,9 @@
  * and everything but the picture still works. A page may have several pictures, each with a device of its own; they
  * are drawn in the same frames, or where drawing is slow they would show different moments of one motion.
  */
+import { backends } from './backends.js';
 import { h } from './dom.js';
+import { move, nothing, paintAll, pinNumbers, tell, turn, turnOf } from './kept.js';
 import { Pace } from './pace.js';
 import init, { part_colours as partColours, pin_colours as pinColours, Viewport } from '../pkg/page.js';
 
@@ -23,7 +25,6 @@ const FLOWS = 900;
 const REACH = 8;
 /** Lines and pins in a picture of a size of its own are this many times as thick as one pixel to a pixel would make them. */
 const PICTURE_SCALE = 2;
-const PIN_STATES = { fixed: 0, proposed: 1, missing: 2 };
 /** Whether pictures are being changed because time goes on, as it always does: nobody waits for that. */
 let following = false;
 
@@ -69,9 +70,8 @@ export class Stage extends EventTarget {
     /** The count since when it is the mesh that is open, and since when it was the last one of which it was told that it is seen. */
     this.opened = 0;
     this.told = 0;
-    /** What is shown. `skin` moves `mesh` instead of its poses; `camera` is null until the visitor moves it. */
-    this.kept = { mesh: null, skin: null, time: -1, loop: false, paint: [['paint_clay']], boundaries: true, wireframe: false,
-      contours: true, marks: new Map(), pins: [], camera: null, turn: null, dark: false, insets: [0, 0, 0, 0], room: [] };
+    /** What is shown, see kept.js. */
+    this.kept = nothing();
     this.closing = new AbortController();
     this.started = this.#start(module);
   }
@@ -143,30 +143,12 @@ export class Stage extends EventTarget {
 
   /** Builds the picture again from what is written down. */
   #restore() {
-    const kept = this.kept;
     // Nothing of it is drawn before all is there: a dark page would light up.
     this.#size();
-    this.view.set_theme(kept.dark);
-    this.view.set_insets(...kept.insets);
-    this.view.set_room(Float32Array.from(kept.room));
-    this.view.set_loop(kept.loop);
-    if (kept.mesh) {
-      this.view.set_mesh(kept.mesh.faces, kept.mesh.reference);
-      move(this.view, kept);
-      if (kept.turn) turn(this.view, kept.turn);
-      if (kept.camera) this.view.set_camera(kept.camera);
-      else this.#frameAll();
-    }
-    this.view.set_time(kept.time);
-    this.view.set_boundaries(kept.boundaries);
-    this.view.set_wireframe(kept.wireframe);
-    this.view.set_contours(kept.contours);
-    apply(this.view, kept.paint);
+    tell(this.view, this.kept, () => this.#frameAll());
     this.flowing = null;
     this.pace.begun = [];
     this.#simplify();
-    for (const [style, faces] of kept.marks) this.view.mark_faces(faces, style);
-    this.view.set_pins(pinNumbers(kept.pins));
     this.waiting = [];
     this.wanted++;
   }
@@ -394,7 +376,7 @@ export class Stage extends EventTarget {
    * @param {...[string, ...any]} paint
    */
   paint(...paint) {
-    this.#set({ paint }, (view) => apply(view, paint));
+    this.#set({ paint }, (view) => paintAll(view, paint));
   }
 
   /** Lets what is painted flow in from some faces, unless the visitor wants nothing to move. @param {Uint32Array} faces */
@@ -612,34 +594,4 @@ export class Stage extends EventTarget {
     if (!blob) throw new Error('The browser could not save the picture.');
     return blob;
   }
-}
-
-/** Yaw and pitch of a camera's numbers. */
-const turnOf = (camera) => camera && [camera[3], camera[4]];
-
-function turn(view, [yaw, pitch]) {
-  const camera = view.camera();
-  camera.set([yaw, pitch], 3);
-  view.set_camera(camera);
-}
-
-/** Has the skin or the poses move the mesh. */
-function move(view, { mesh, skin }) {
-  if (skin) view.set_skin(skin.handles, skin.indices, skin.weights, skin.K, skin.matrices);
-  else view.set_poses(mesh.poses);
-}
-
-/** Pins as the Viewport takes them. */
-const pinNumbers = (pins) => Float32Array.from(pins.flatMap(({ vertex = -1, face = -1, weights = [0, 0, 0], colour, state = 'fixed', selected, hovered }, i) =>
-  [vertex, face, ...weights, colour ?? i, PIN_STATES[state], (selected ? 1 : 0) + (hovered ? 2 : 0)]));
-
-function apply(view, paint) {
-  for (const [method, ...values] of paint) view[method](...values);
-}
-
-/** The backends worth trying. WebGPU is probed without a canvas: one that fails would be spoilt for WebGL2. */
-async function backends(forced) {
-  if (forced) return [forced];
-  const adapter = await navigator.gpu?.requestAdapter().catch(() => null);
-  return adapter ? ['webgpu', 'webgl2'] : ['webgl2'];
 }
