@@ -88,6 +88,11 @@ impl Page {
             log,
         };
         page.call("Page.enable", json!({}));
+        if !fresh && page.address == served() {
+            // Every file twice over, from the server to the service worker and from there to the page, is not their subject.
+            page.call("Network.enable", json!({}));
+            page.call("Network.setBypassServiceWorker", json!({ "bypass": true }));
+        }
         page.resize(screen);
         page.go(tail);
         page
