@@ -306,7 +306,7 @@ const FORMER: &str = "(() => { const { app } = sinew; window.captions = [];
 #[test]
 #[ignore = "drives the built page in Chromium: run by `cargo xtask test`"]
 fn the_gallery_opens_pairs_that_move() {
-    let mut page = opened(Backend::WebGl2, Screen::Small, "#v1;zoo=snake;faces=3000");
+    let mut page = opened(Backend::WebGl2, Screen::Still, "#v1;zoo=snake;faces=3000");
     page.evaluate("Object.assign(sinew.app.about.recipe, { faces: 4000, poses: 12 }); undefined");
     for (source, target) in [("snake", "hand"), ("person", "dinosaur"), ("horse", "camel")] {
         let was = page.evaluate("sinew.app.target.sequence?.name ?? null");

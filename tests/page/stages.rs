@@ -247,9 +247,10 @@ fn every_stage_has_a_lesson() {
     page.wait_until(&format!("sinew.app.changes.epsilon && sinew.app.result.epsilon !== {before} && {IDLE}"), 10.0);
 }
 
-/// Goes through a tour from a link to its beginning, and looks at the figures of every stop.
-fn tour(id: &str) {
-    let mut page = opened(Backend::WebGl2, Screen::Small, "#v1;zoo=snake;faces=3000");
+/// Goes through a tour from a link to its beginning, and looks at the figures of every stop. One of them is gone through in
+/// motion; the others stand still, for which much less is drawn.
+fn tour(id: &str, screen: Screen) {
+    let mut page = opened(Backend::WebGl2, screen, "#v1;zoo=snake;faces=3000");
     // The same figures with fewer faces, in fewer poses.
     page.evaluate(&format!(
         "Object.assign(sinew.app.about.recipe, {{ faces: 3000, poses: 8 }}); sinew.app.guide.begin('{id}').then(() => 0)"
@@ -285,31 +286,31 @@ fn tour(id: &str) {
 #[test]
 #[ignore = "drives the built page in Chromium: run by `cargo xtask test`"]
 fn the_tour_of_why_parts_bend_leads_to_its_end() {
-    tour("bend");
+    tour("bend", Screen::Still);
 }
 
 #[test]
 #[ignore = "drives the built page in Chromium: run by `cargo xtask test`"]
 fn the_tour_of_joints_leads_to_its_end() {
-    tour("joints");
+    tour("joints", Screen::Still);
 }
 
 #[test]
 #[ignore = "drives the built page in Chromium: run by `cargo xtask test`"]
 fn the_tour_of_points_leads_to_its_end() {
-    tour("points");
+    tour("points", Screen::Small);
 }
 
 #[test]
 #[ignore = "drives the built page in Chromium: run by `cargo xtask test`"]
 fn the_tour_of_two_bodies_leads_to_its_end() {
-    tour("two-bodies");
+    tour("two-bodies", Screen::Still);
 }
 
 #[test]
 #[ignore = "drives the built page in Chromium: run by `cargo xtask test`"]
 fn the_tour_of_poses_that_differ_leads_to_its_end() {
-    tour("poses");
+    tour("poses", Screen::Still);
 }
 
 #[test]
