@@ -1,5 +1,7 @@
 //! The result as a skin.
 
+use super::rig::weights::Row;
+use super::surface::Surface;
 use glam::{DAffine3, DVec3};
 
 /// A mesh that follows handles: what the page plays and the light export writes.
@@ -16,6 +18,23 @@ pub struct Skin {
 }
 
 impl Skin {
+    /// A skin of `count` handles over all given vertices, of #N rows for the places of the target.
+    pub(super) fn new(target: &Surface, count: usize, rows: &[Row], maps: Vec<Vec<DAffine3>>) -> Self {
+        let mut strongest = vec![(0.0, 0); count];
+        for (row, &vertex) in rows.iter().zip(&target.vertex) {
+            for &(handle, share) in row {
+                if share > strongest[handle as usize].0 {
+                    strongest[handle as usize] = (share, vertex);
+                }
+            }
+        }
+        Self {
+            handles: strongest.into_iter().map(|best| best.1).collect(),
+            rows: target.place.iter().map(|&place| rows[place as usize].clone()).collect(),
+            maps,
+        }
+    }
+
     /// #V positions in one pose, of the reference positions; the reference itself where there is no such pose.
     pub fn pose(&self, reference: &[DVec3], pose: usize) -> Vec<DVec3> {
         match self.maps.get(pose) {

@@ -3,12 +3,12 @@
 use super::kd_tree::KdTree;
 use super::ties::ties;
 use crate::mesh::ball::unit_ball;
-use crate::mesh::doctor::outward;
+use crate::mesh::doctor;
 use crate::mesh::face::nearest_in_triangle;
 use crate::mesh::pieces::{Pieces, pieces};
 use crate::mesh::{face, weld};
 use crate::sequence::Sequence;
-use glam::DVec3;
+use glam::{DAffine3, DVec3};
 
 /// How far apart, in radii of the mesh, vertices along a seam may lie.
 const WELD_TOLERANCE: f64 = 1e-6;
@@ -72,7 +72,7 @@ impl Surface {
         for v in 0..stands.len() {
             place[v] = place[stands[v] as usize];
         }
-        let faces: Vec<[u32; 3]> = outward(sequence.faces(), sequence.reference())
+        let faces: Vec<[u32; 3]> = doctor::outward(sequence.faces(), sequence.reference())
             .iter()
             .map(|face| face.map(|v| place[v as usize]))
             .filter(|&[a, b, c]| a != b && b != c && c != a)
@@ -125,6 +125,21 @@ impl Surface {
     /// A point of the sequence in the unit ball.
     pub fn inward(&self, point: DVec3) -> DVec3 {
         point / self.radius - self.centre / self.radius
+    }
+
+    /// Where a given vertex lies in the unit ball.
+    pub fn at(&self, vertex: u32) -> DVec3 {
+        self.positions[self.place[vertex as usize] as usize]
+    }
+
+    /// Maps in the unit ball as maps in the units of the sequence; those that are not finite change nothing.
+    pub fn outward(&self, maps: &[DAffine3]) -> Vec<DAffine3> {
+        let Self { centre, radius, .. } = *self;
+        let outward = |map: &DAffine3| {
+            let translation = radius * map.translation + centre - map.matrix3 * centre;
+            DAffine3::from_mat3_translation(map.matrix3, translation)
+        };
+        maps.iter().map(outward).map(|map| if map.is_finite() { map } else { DAffine3::IDENTITY }).collect()
     }
 
     /// #N unit normals of the places at other positions.
