@@ -56,6 +56,11 @@ impl Field {
         Self { value, held }
     }
 
+    /// Whether it is another one somewhere, by more than that.
+    pub fn differs(&self, other: &Self, by: f64) -> bool {
+        self.value.iter().zip(&other.value).any(|(a, b)| (a - b).abs() > by)
+    }
+
     /// The field multiplied so as to be 1 at `one`.
     pub fn times(mut self, factor: f64, one: u32) -> Self {
         self.value.iter_mut().for_each(|x| *x = (*x * factor).min(1.0));

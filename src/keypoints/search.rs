@@ -174,14 +174,17 @@ impl<'a> Search<'a> {
         (better.error < self.set.error * (1.0 - WORTH) - ROUNDING).then_some(better)
     }
 
-    /// Takes a set over whose last point replaces that at `place`.
-    pub fn accept_instead(&mut self, place: usize, mut better: Set) {
+    /// Takes a set over whose last point replaces that at `place`; the places of the points whose fields felt it.
+    pub fn accept_instead(&mut self, place: usize, mut better: Set) -> Vec<usize> {
         let probes = self.released(place);
         // The new point takes the place of the old one.
         better.members[place..].rotate_right(1);
         better.fields[place..].rotate_right(1);
         better.rough[place..].rotate_right(1);
+        let felt = |&k: &usize| self.set.fields[k].differs(&better.fields[k], FELT);
+        let felt = (0..better.fields.len()).filter(felt).collect();
         self.accept(better, probes);
+        felt
     }
 
     /// The probes when the point at `place` is not there.

@@ -177,16 +177,22 @@ async fn in_turn<'a>(
 ) -> Result<(), KeyPointError> {
     let count = search.set.members.len();
     let (mut done, mut place, mut left) = (from, 0, ROUNDS * count);
-    while left > 0 {
+    // Points that have not been tried since something changed around them.
+    let mut open = vec![true; count];
+    loop {
+        let places: Vec<usize> = (place..place + count).map(|p| p % count).filter(|&p| open[p]).take(left).collect();
         watch.tell(done)?;
-        let found = crew.until(count.min(left), &|i| attempt(search, (place + i) % count), &Option::is_some).await;
-        done += (to - done) * (0.02 * found.len() as f64).min(1.0);
-        place = (place + found.len()) % count;
-        left -= found.len();
-        let Some(better) = found.into_iter().next_back().flatten() else { break };
-        let last = (place + count - 1) % count;
+        let found = crew.until(places.len(), &|i| attempt(search, places[i]), &Option::is_some).await;
+        let tried = &places[..found.len()];
+        done += (to - done) * (0.02 * tried.len() as f64).min(1.0);
+        left -= tried.len();
+        tried.iter().for_each(|&p| open[p] = false);
+        let (Some(&last), Some(better)) = (tried.last(), found.into_iter().next_back().flatten()) else { break };
+        place = last + 1;
         let old = search.set.members[last];
-        search.accept_instead(last, better);
+        for p in search.accept_instead(last, better) {
+            open[p] = true;
+        }
         trail.add(coarse, old, search.set.members[last], search.set.error);
     }
     Ok(())
