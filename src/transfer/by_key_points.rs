@@ -20,10 +20,11 @@ pub struct KeyPoints {
     weights: [Biharmonic; 2],
     /// The weights of the result before, from which the next start while a point is dragged.
     last: Option<[Weights; 2]>,
+    /// How poses of the source become motions of the key points on the target, since the last result.
     carrier: Option<Carrier>,
 }
 
-/// How poses of the source become motions of the key points on the target.
+/// The motions of the key points on the source, and where these are on both.
 struct Carrier {
     fitter: Fitter,
     /// Where the key points lie on the source and on the target.

@@ -33,11 +33,10 @@ impl Pieces {
     /// Of a surface with some marked places.
     pub fn new(surface: &Surface, marks: impl Iterator<Item = u32>) -> Self {
         let places = surface.pieces();
-        let mut number = vec![0; surface.len()];
-        places.iter().enumerate().for_each(|(i, piece)| piece.iter().for_each(|&v| number[v as usize] = i));
+        let number = surface.numbered(&places);
         let mut held = vec![false; places.len()];
-        marks.for_each(|v| held[number[v as usize]] = true);
-        Self { marked: number.iter().map(|&piece| held[piece]).collect(), places }
+        marks.for_each(|v| held[number[v as usize] as usize] = true);
+        Self { marked: number.iter().map(|&piece| held[piece as usize]).collect(), places }
     }
 
     /// #N shares of the area, those of pieces with a mark: together, they are 1.

@@ -2,10 +2,11 @@
 //!
 //! A few pairs of corresponding vertices are all that is given. Jie Yang, Lin Gao, Yu-Kun Lai, Paul L. Rosin, Shihong Xia,
 //! *Biharmonic deformation transfer with automatic key point selection*, Graphical Models 98, 2018, §3.6, blends the
-//! motions of these points by their biharmonic weights on the target ([`biharmonic`], `by_key_points`). The default
-//! (`by_bones`) finds the whole surface of the target on the source, starting from the pairs and from places that the surfaces seem to have in common
-//! (`bending`, with [`propose`], [`spline`] and [`registration`]), takes the source's motion apart into near-rigid bones
-//! ([`rig`]), and sets these into the target, joint on joint ([`joints`]). Both give a [`Skin`].
+//! motions of these points by their biharmonic weights on the target (`by_key_points`, [`biharmonic`]). The default
+//! (`by_bones`) finds the whole surface of the target on the source, starting from the pairs and from places that the
+//! surfaces seem to have in common (`bending`, with [`propose`], [`spline`] and [`registration`]), takes the source's
+//! motion apart into near-rigid bones ([`rig`]), and sets these into the target, joint on joint ([`joints`]). Both give a
+//! [`Skin`].
 //! What each face of the source does can also be asked of the target's faces directly ([`gradients`]), and so with
 //! references in different postures ([`posed`]); that gives the positions of vertices, by a [`gradients::Mover`].
 

@@ -47,6 +47,7 @@ pub struct Surface {
     /// Where the neighbours of each place begin in `beside`, #N + 1.
     neighbour_start: Vec<u32>,
     beside: Vec<u32>,
+    /// Pairs of places of different pieces that count as neighbours.
     ties: Vec<(u32, u32)>,
 }
 
@@ -155,7 +156,9 @@ impl Surface {
     /// The same surface, its pieces tied where they touch: places at both ends of a tie are neighbours.
     pub fn tied(mut self) -> Self {
         self.ties = ties(&self);
-        self.link();
+        if !self.ties.is_empty() {
+            self.link();
+        }
         self
     }
 
@@ -164,15 +167,15 @@ impl Surface {
         &self.ties
     }
 
-    /// The place on the faces around a vertex that is nearest to a point, and where it is.
-    pub fn nearest_around(&self, vertex: u32, point: DVec3) -> Option<(Foot, DVec3)> {
+    /// What is nearest to a point on the faces around a place, and where that is.
+    pub fn nearest_around(&self, place: u32, point: DVec3) -> Option<(Foot, DVec3)> {
         let at = |&face: &u32| {
             let corners = self.faces[face as usize].map(|v| self.positions[v as usize]);
             let shares = nearest_in_triangle(point, corners);
-            let place = corners[0] * shares[0] + corners[1] * shares[1] + corners[2] * shares[2];
-            (Foot { face, shares }, place, place.distance_squared(point))
+            let at = corners[0] * shares[0] + corners[1] * shares[1] + corners[2] * shares[2];
+            (Foot { face, shares }, at, at.distance_squared(point))
         };
-        let found = self.faces_around(vertex as usize).iter().map(at).min_by(|a, b| a.2.total_cmp(&b.2))?;
+        let found = self.faces_around(place as usize).iter().map(at).min_by(|a, b| a.2.total_cmp(&b.2))?;
         Some((found.0, found.1))
     }
 
@@ -197,6 +200,15 @@ impl Surface {
             }
         }
         places
+    }
+
+    /// For each place the number of its piece among [`Surface::pieces`].
+    pub fn numbered(&self, pieces: &[Vec<u32>]) -> Vec<u32> {
+        let mut number = vec![0; self.len()];
+        for (places, n) in pieces.iter().zip(0..) {
+            places.iter().for_each(|&v| number[v as usize] = n);
+        }
+        number
     }
 
     /// The sides of the box around places.

@@ -10,8 +10,8 @@ const FAR: f64 = 0.06;
 /// nothing looks at all places within reach.
 const SPACINGS: f64 = 12.0;
 const ASKED: usize = 1000;
-/// Places of two pieces no farther apart than this, in radii, count in full as touching; nor are those that are nearer than
-/// this and twice the nearest.
+/// How near pieces lie where they touch, in radii: places farther apart count less and less for how much two touch, and
+/// those farther apart than twice the nearest and this are not tied.
 const TOUCH: f64 = 0.02;
 /// Pieces are tied if this share of what one of them touches most is between them: thighs that brush against each other
 /// hang on the hips.
@@ -23,10 +23,7 @@ pub fn ties(surface: &Surface) -> Vec<(u32, u32)> {
     if pieces.len() < 2 {
         return Vec::new();
     }
-    let mut piece = vec![0; surface.len()];
-    for (places, number) in pieces.iter().zip(0_u32..) {
-        places.iter().for_each(|&v| piece[v as usize] = number);
-    }
+    let piece = surface.numbered(&pieces);
     let contacts = contacts(surface, &pieces, &piece);
     let between = |(v, u): (u32, u32)| {
         let (a, b) = (piece[v as usize], piece[u as usize]);

@@ -3,7 +3,7 @@
 use super::Engine;
 use super::crew::Workers;
 use super::sequences::{describe, kept_sequence, rounded};
-use super::values::{Reply, parsed, plain, put, read_files, sentence, single};
+use super::values::{Reply, parsed, put, read_files, sentence, single};
 use crate::import::{self, Options};
 use crate::memory::Step;
 use crate::sequence::Sequence;
@@ -56,7 +56,6 @@ impl Engine {
         let confidences: Vec<f64> = proposals.points.iter().map(|point| point.confidence).collect();
         put(&reply, "targets", &Uint32Array::from(targets.as_slice()))?;
         put(&reply, "confidences", &single(&confidences))?;
-        put(&reply, "next", &plain(&proposals.next)?)?;
         Ok(reply)
     }
 
@@ -121,7 +120,8 @@ impl Engine {
 
 pub(super) fn creature(recipe: JsValue) -> Result<zoo::Creature, JsValue> {
     let recipe: Recipe = parsed(recipe)?;
-    let none =
-        || sentence(format!("There is no “{}” of {} faces; there may be one of fewer.", recipe.name, recipe.faces));
+    let none = || {
+        sentence(format!("There is no “{}” of {} faces: try fewer, or another creature.", recipe.name, recipe.faces))
+    };
     zoo::make(&recipe).ok_or_else(none)
 }
