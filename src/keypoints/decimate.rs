@@ -3,7 +3,7 @@
 //! Edges collapse onto one of their ends, cheapest first: Michael Garland, Paul S. Heckbert. *Surface simplification
 //! using quadric error metrics*. SIGGRAPH 1997, with the link condition of Tamal K. Dey, Herbert Edelsbrunner, Sumanta
 //! Guha, Dmitry V. Nekhayev. *Topology preserving edge contraction*. 1999. What cannot collapse without changing the
-//! topology stays, so that thin limbs stay limbs.
+//! topology stays, so that thin limbs stay limbs; only where that is far more than wanted, holes and handles close.
 
 use glam::{DMat3, DVec3};
 use std::cmp::Reverse;
@@ -11,6 +11,13 @@ use std::collections::BinaryHeap;
 
 /// Share of squared edge lengths times area in the price of a collapse: keeps triangles of one size where all is flat.
 const EVEN: f64 = 1e-3;
+
+/// With more than so many times the vertices that are wanted, holes and handles close.
+const MUCH: usize = 2;
+
+/// A vertex of more faces, the middle of a fan, does not collapse: every change around it would have it tried anew, with each
+/// of its neighbours.
+const MOST_FACES: usize = 64;
 
 /// A coarse mesh.
 pub struct Coarse {
@@ -54,37 +61,27 @@ struct Mesh<'a> {
     points: &'a [DVec3],
     faces: Vec<[u32; 3]>,
     alive: Vec<bool>,
-    /// Faces of each vertex, dead ones among them.
+    /// Faces of each vertex, as many dead ones among them as `dead` says: half of them at most.
     around: Vec<Vec<u32>>,
+    dead: Vec<u32>,
     quadrics: Vec<Quadric>,
     stamp: Vec<u32>,
+    /// Whether holes and handles may close.
+    closing: bool,
 }
+
+/// The cheapest first: price, what collapses, onto what, and the stamp of the former then.
+type Heap = BinaryHeap<Reverse<(u64, u32, u32, u32)>>;
 
 /// Collapses until about `target` vertices with faces are left. `keep` is #V: what must stay. Of faces between the same
 /// vertices, as in two-sided leaves, one is taken.
 pub fn decimate(faces: &[[u32; 3]], points: &[DVec3], keep: &[bool], target: usize) -> Coarse {
     let mut mesh = Mesh::new(faces, points);
     let mut onto: Vec<u32> = (0..points.len() as u32).collect();
-    let mut left = mesh.around.iter().filter(|f| !f.is_empty()).count();
-    let mut heap = BinaryHeap::new();
-    for v in 0..points.len() as u32 {
-        mesh.offer(v, keep, &mut heap);
-    }
-    while left > target {
-        let Some(Reverse((_, v, u, stamp))) = heap.pop() else { break };
-        if stamp != mesh.stamp[v as usize] || !mesh.may_collapse(v, u) {
-            continue;
-        }
-        mesh.collapse(v, u);
-        onto[v as usize] = u;
-        left -= 1;
-        let mut near = mesh.neighbours(u);
-        near.push(u);
-        for w in near {
-            mesh.stamp[w as usize] += 1;
-            mesh.offer(w, keep, &mut heap);
-        }
-    }
+    let left = mesh.around.iter().filter(|f| !f.is_empty()).count();
+    let left = mesh.thin_out(left, target, keep, &mut onto);
+    mesh.closing = true;
+    mesh.thin_out(left, MUCH * target, keep, &mut onto);
     for v in 0..onto.len() {
         let mut end = v as u32;
         while onto[end as usize] != end {
@@ -132,11 +129,47 @@ impl<'a> Mesh<'a> {
             }
         }
         let stamp = vec![0; points.len()];
-        Self { points, faces: faces.to_vec(), alive, around, quadrics, stamp }
+        let dead = vec![0; points.len()];
+        Self { points, faces: faces.to_vec(), alive, around, dead, quadrics, stamp, closing: false }
+    }
+
+    /// Collapses until `target` of the `left` vertices are left, or nothing can collapse; how many are.
+    fn thin_out(&mut self, mut left: usize, target: usize, keep: &[bool], onto: &mut [u32]) -> usize {
+        let mut heap = BinaryHeap::new();
+        if left > target {
+            (0..keep.len() as u32).for_each(|v| self.offer(v, keep, &mut heap));
+        }
+        while left > target {
+            let Some(Reverse((_, v, u, stamp))) = heap.pop() else { break };
+            if stamp != self.stamp[v as usize] || !self.may_collapse(v, u, &self.neighbours(v)) {
+                continue;
+            }
+            self.collapse(v, u);
+            onto[v as usize] = u;
+            left -= 1;
+            let mut near = self.neighbours(u);
+            near.push(u);
+            for w in near {
+                self.stamp[w as usize] += 1;
+                self.offer(w, keep, &mut heap);
+            }
+        }
+        left
     }
 
     fn faces_of(&self, v: u32) -> impl Iterator<Item = u32> + '_ {
         self.around[v as usize].iter().copied().filter(|&f| self.alive[f as usize])
+    }
+
+    /// How many faces a vertex has.
+    fn faces(&self, v: u32) -> usize {
+        self.around[v as usize].len() - self.dead[v as usize] as usize
+    }
+
+    /// Whether two vertices share a face.
+    fn adjacent(&self, a: u32, b: u32) -> bool {
+        let [few, other] = if self.around[a as usize].len() <= self.around[b as usize].len() { [a, b] } else { [b, a] };
+        self.faces_of(few).any(|f| self.faces[f as usize].contains(&other))
     }
 
     fn neighbours(&self, v: u32) -> Vec<u32> {
@@ -147,14 +180,14 @@ impl<'a> Mesh<'a> {
     }
 
     /// Puts the cheapest collapse of `v` into the heap.
-    fn offer(&self, v: u32, keep: &[bool], heap: &mut BinaryHeap<Reverse<(u64, u32, u32, u32)>>) {
-        if keep[v as usize] {
+    fn offer(&self, v: u32, keep: &[bool], heap: &mut Heap) {
+        if keep[v as usize] || self.faces(v) > MOST_FACES {
             return;
         }
         let near = self.neighbours(v);
         let mut offers: Vec<(f64, u32)> = near.iter().map(|&u| (self.price(v, u), u)).collect();
         offers.sort_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
-        if let Some(&(price, u)) = offers.iter().find(|offer| self.may_collapse(v, offer.1)) {
+        if let Some(&(price, u)) = offers.iter().find(|offer| self.may_collapse(v, offer.1, &near)) {
             heap.push(Reverse((price.to_bits(), v, u, self.stamp[v as usize])));
         }
     }
@@ -167,33 +200,36 @@ impl<'a> Mesh<'a> {
         if price.is_finite() { price } else { f64::MAX }
     }
 
-    /// Whether `v` can move onto `u` without changing the topology or turning a face over.
-    fn may_collapse(&self, v: u32, u: u32) -> bool {
+    /// Whether `v`, whose neighbours are `near`, can move onto `u` without turning a face over or, unless holes and handles
+    /// may close, changing the topology.
+    fn may_collapse(&self, v: u32, u: u32, near: &[u32]) -> bool {
         let opposite: Vec<u32> = (self.faces_of(v).map(|f| self.faces[f as usize]))
             .filter(|face| face.contains(&u))
             .flat_map(|face| face.into_iter().filter(|&w| w != u && w != v))
             .collect();
-        let (of_v, of_u) = (self.neighbours(v), self.neighbours(u));
-        let common = of_v.iter().filter(|w| of_u.binary_search(w).is_ok()).count();
-        // An edge inside between two vertices of the boundary would pinch the surface.
-        let pinches = opposite.len() == 2 && self.on_boundary(v, &of_v);
-        if opposite.is_empty() || common != opposite.len() || pinches {
-            return false;
-        }
         // Nobody may be left without a face.
-        if self.faces_of(v).count() == opposite.len() || opposite.iter().any(|&w| self.faces_of(w).count() < 2) {
+        let last = self.faces(v) == opposite.len() || opposite.iter().any(|&w| self.faces(w) < 2);
+        if opposite.is_empty() || last || !(self.closing || self.keeps_topology(v, u, near, &opposite)) {
             return false;
         }
         self.faces_of(v).map(|f| self.faces[f as usize]).filter(|face| !face.contains(&u)).all(|face| {
             let moved = face.map(|w| if w == v { u } else { w });
-            self.keeps_its_side(face, moved) && !self.exists(moved, u)
+            self.keeps_its_side(face, moved) && !self.exists(moved)
         })
     }
 
+    /// The link condition: `opposite` the edge is who is beside both of its ends, and no edge inside joins two vertices of
+    /// the boundary, which would pinch the surface.
+    fn keeps_topology(&self, v: u32, u: u32, near: &[u32], opposite: &[u32]) -> bool {
+        let common = near.iter().filter(|&&w| w != u && self.adjacent(w, u)).count();
+        common == opposite.len() && !(opposite.len() == 2 && self.on_boundary(v))
+    }
+
     /// Whether some edge of `v` has other than two faces.
-    fn on_boundary(&self, v: u32, near: &[u32]) -> bool {
-        let faces: Vec<[u32; 3]> = self.faces_of(v).map(|f| self.faces[f as usize]).collect();
-        near.iter().any(|w| faces.iter().filter(|face| face.contains(w)).count() != 2)
+    fn on_boundary(&self, v: u32) -> bool {
+        let mut ends: Vec<u32> = self.faces_of(v).flat_map(|f| self.faces[f as usize]).filter(|&w| w != v).collect();
+        ends.sort_unstable();
+        ends.chunk_by(|a, b| a == b).any(|faces| faces.len() != 2)
     }
 
     fn keeps_its_side(&self, before: [u32; 3], after: [u32; 3]) -> bool {
@@ -208,13 +244,9 @@ impl<'a> Mesh<'a> {
         !slim && old.dot(new) >= 0.2 * old.length() * new.length()
     }
 
-    fn exists(&self, mut face: [u32; 3], v: u32) -> bool {
-        face.sort_unstable();
-        self.faces_of(v).any(|f| {
-            let mut other = self.faces[f as usize];
-            other.sort_unstable();
-            other == face
-        })
+    fn exists(&self, face: [u32; 3]) -> bool {
+        let few = face.into_iter().min_by_key(|&v| self.around[v as usize].len());
+        few.is_some_and(|v| self.faces_of(v).any(|f| self.faces[f as usize].iter().all(|w| face.contains(w))))
     }
 
     fn collapse(&mut self, v: u32, u: u32) {
@@ -224,16 +256,25 @@ impl<'a> Mesh<'a> {
             }
             if self.faces[f as usize].contains(&u) {
                 self.alive[f as usize] = false;
+                self.faces[f as usize].into_iter().for_each(|w| self.bury(w));
             } else {
                 self.faces[f as usize].iter_mut().filter(|w| **w == v).for_each(|w| *w = u);
                 self.around[u as usize].push(f);
             }
         }
-        let (alive, faces) = (&self.alive, &mut self.around[u as usize]);
-        faces.retain(|&f| alive[f as usize]);
         let quadric = self.quadrics[v as usize];
         self.quadrics[u as usize].add(&quadric);
         self.stamp[v as usize] += 1;
+    }
+
+    /// One more face of a vertex is dead; they are forgotten once they are many.
+    fn bury(&mut self, v: u32) {
+        self.dead[v as usize] += 1;
+        let (alive, around) = (&self.alive, &mut self.around[v as usize]);
+        if 2 * self.dead[v as usize] as usize > around.len() {
+            around.retain(|&f| alive[f as usize]);
+            self.dead[v as usize] = 0;
+        }
     }
 }
 
@@ -271,5 +312,33 @@ mod tests {
         let crossed = faces.iter().map(|face| face.map(|v| on_line(v + offset)));
         let crossed: Vec<[u32; 3]> = faces.iter().copied().chain(crossed).collect();
         assert!(left(&crossed, &both, 100) <= 110);
+    }
+
+    #[test]
+    fn holes_close_only_where_far_too_much_would_be_left() {
+        // Every other square of every other row is a hole.
+        let (faces, points) = sheet(41);
+        let is_hole = |square: usize| (square / 41) % 2 == 1 && (square % 41) % 2 == 1;
+        let holes =
+            |faces: &[[u32; 3]]| (0..).zip(faces).filter(|(f, _)| !is_hole(f / 2)).map(|(_, face)| *face).collect();
+        let faces: Vec<[u32; 3]> = holes(&faces);
+        assert!(left(&faces, &points, 1000) <= 1240);
+        assert_eq!(left(&faces, &points, 100), 200);
+    }
+
+    #[test]
+    fn fans_thin_out_in_no_time() {
+        // A flat box of two fans and a narrow wall.
+        let rim = 2_000;
+        let angle = |i: u32| std::f64::consts::TAU * f64::from(i) / f64::from(rim);
+        let circle = |y: f64| (0..rim).map(move |i| DVec3::new(angle(i).cos(), y, angle(i).sin()));
+        let points: Vec<DVec3> =
+            circle(0.0).chain(circle(0.1)).chain([DVec3::ZERO, DVec3::new(0.0, 0.1, 0.0)]).collect();
+        let sides = (0..rim).flat_map(|i| {
+            let [a, b] = [i, (i + 1) % rim];
+            let [c, d] = [a, b].map(|v| v + rim);
+            [[a, c, b], [b, c, d], [2 * rim, a, b], [2 * rim + 1, d, c]]
+        });
+        assert_eq!(left(&sides.collect::<Vec<_>>(), &points, 60), 60);
     }
 }

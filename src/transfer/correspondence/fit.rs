@@ -87,17 +87,15 @@ impl<'a> Fit<'a> {
         Ok(Self { surface, rest, equations: sum.terms.finish()?, unknown })
     }
 
-    /// Bends the surface into `target`, whose faces are in `tree`. `shape` hears of every round with #N positions and the
+    /// Bends the surface into the target, whose faces are in `tree`. `shape` hears of every round with #N positions and the
     /// share that is done, and may stop by `false`; the last of them is the answer.
     pub fn bend(
         &self,
-        target: &Surface,
         tree: &Bvh,
         fitting: &Fitting,
         hints: &[Marker],
         mut shape: impl FnMut(&[DVec3], f64) -> bool,
     ) -> Result<Vec<DVec3>, NotPositiveDefinite> {
-        let normals = face_normals(target);
         let mut at = self.rest.clone();
         let mut factor: Option<Cholesky> = None;
         for (round, &weight) in fitting.closeness.iter().enumerate() {
@@ -110,7 +108,7 @@ impl<'a> Fit<'a> {
                 }
             };
             if weight > 0.0 {
-                let goals = self.goals(&at, tree, &normals).into_iter().enumerate();
+                let goals = self.goals(&at, tree).into_iter().enumerate();
                 goals.for_each(|(v, goal)| goal.into_iter().for_each(|goal| pull(v, goal, weight)));
             } else {
                 hints.iter().for_each(|&(v, goal)| pull(v as usize, goal, HINTED));
@@ -132,10 +130,9 @@ impl<'a> Fit<'a> {
     }
 
     /// For each place the nearest point of the target that faces as the place does.
-    fn goals(&self, at: &[DVec3], tree: &Bvh, normals: &[DVec3]) -> Vec<Option<DVec3>> {
+    fn goals(&self, at: &[DVec3], tree: &Bvh) -> Vec<Option<DVec3>> {
         let own = self.surface.normals_of(at);
-        let goal = |(&p, &n): (&DVec3, &DVec3)| Some(tree.nearest(p, |f| normals[f as usize].dot(n) > 0.0)?.point);
-        at.iter().zip(&own).map(goal).collect()
+        at.iter().zip(&own).map(|(&p, &n)| Some(tree.nearest_facing(p, n)?.point)).collect()
     }
 }
 

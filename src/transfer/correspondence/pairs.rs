@@ -45,12 +45,12 @@ impl Correspondence {
         let mut pairs = Vec::with_capacity(source.faces.len() + target.faces.len());
         let (own, other) = (normals_at(source, bent), face_normals(target));
         for (f, middle) in face::centroids(&source.faces, bent).into_iter().enumerate() {
-            let hit = tree.nearest(middle, |g| other[g as usize].dot(own[f]) > 0.0);
+            let hit = tree.nearest_facing(middle, own[f]);
             if let Some(hit) = hit.filter(|hit| sound[f] && hit.squared <= NEAR * NEAR) {
                 pairs.push([hit.face, f as u32]);
             }
         }
-        let tree = Bvh::new(&source.faces, bent);
+        let tree = Bvh::new(&source.faces, bent, |f| sound[f as usize]);
         let areas = face::areas(&target.faces, &target.positions);
         let mut quality = Quality::default();
         let middles = face::centroids(&target.faces, &target.positions);
@@ -58,14 +58,10 @@ impl Correspondence {
         let mut covered = Vec::new();
         for (g, &middle) in middles.iter().enumerate() {
             let faces_alike = |f: u32| own[f as usize].dot(other[g]) > 0.0;
-            let usable = |f: u32| sound[f as usize];
-            let Some(nearest) = tree.nearest(middle, usable) else { continue };
+            let Some(nearest) = tree.nearest(middle) else { continue };
             let flipped = !faces_alike(nearest.face) && other[g] != DVec3::ZERO;
-            let hit = if flipped {
-                tree.nearest(middle, |f| usable(f) && faces_alike(f)).unwrap_or(nearest)
-            } else {
-                nearest
-            };
+            let facing = if flipped { tree.nearest_facing(middle, other[g]) } else { None };
+            let hit = facing.unwrap_or(nearest);
             partners[g] = Some(hit.face);
             quality.distance += areas[g] * hit.squared.sqrt();
             quality.flipped += if flipped { areas[g] } else { 0.0 };

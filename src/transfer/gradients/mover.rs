@@ -211,11 +211,11 @@ impl Mover {
         });
         let fitting = &self.parameters.fitting;
         let fit = Fit::new(&self.source, rest.clone(), &markers, fitting).map_err(degenerate_source)?;
-        let tree = Bvh::new(&target.faces, &target.positions);
+        let tree = Bvh::new(&target.faces, &target.positions, |_| true);
         let mut shapes = vec![rest];
         let mut going = true;
         let bent = fit
-            .bend(&target, &tree, fitting, &hints, |shape, done| {
+            .bend(&tree, fitting, &hints, |shape, done| {
                 shapes.push(shape.to_vec());
                 going = progress(0.9 * done);
                 going
