@@ -289,6 +289,7 @@ fn what_cannot_be_is_refused() {
     let refused = |parameters: Parameters| select(&bar, &parameters, &mut Silent).err();
     for parameters in [
         Parameters { candidates: 0, ..Parameters::default() },
+        Parameters { candidates: 1001, ..Parameters::default() },
         Parameters { points: Some(0), ..Parameters::default() },
         Parameters { error: f64::NAN, ..Parameters::default() },
         Parameters { lambda: -1.0, ..Parameters::default() },

@@ -12,6 +12,7 @@ use sinew::linalg::rigid_fit::Moments;
 use sinew::mesh::ball::unit_ball;
 use sinew::observer::Silent;
 use sinew::sequence::{Pose, Sequence};
+use sinew::transfer::correspondence::Fitting;
 use sinew::transfer::gradients::Mover;
 use sinew::transfer::rig::Rig;
 use sinew::transfer::surface::Surface;
@@ -493,6 +494,15 @@ fn what_cannot_be_used_is_said_in_words() {
     let stop =
         transfer(&person, &still(&person), &[pair(0, 0)], &Parameters::default(), &mut |_: &'static str, _: f64| false);
     assert_eq!(stop.expect_err("an error"), TransferError::Cancelled);
+    let fitting = |closeness: f64| Fitting { closeness: vec![0.0, closeness], ..Fitting::default() };
+    for (name, wrong) in [
+        ("bones", Parameters { bones: 0, ..Parameters::default() }),
+        ("doubt", Parameters { doubt: f64::NAN, method: Method::Gradients, ..Parameters::default() }),
+        ("closeness", Parameters { fitting: fitting(-1.0), method: Method::Posed, ..Parameters::default() }),
+    ] {
+        let error = transfer(&person, &still(&person), &[pair(0, 0)], &wrong, &mut Silent).expect_err("an error");
+        assert!(matches!(error, TransferError::Parameter { name: said, .. } if said == name), "{error}");
+    }
 }
 
 #[test]

@@ -15,8 +15,8 @@ const EVEN: f64 = 1e-3;
 /// With more than so many times the vertices that are wanted, holes and handles close.
 const MUCH: usize = 2;
 
-/// A vertex of more faces, the middle of a fan, does not collapse: every change around it would have it tried anew, with each
-/// of its neighbours.
+/// A vertex of more faces, the middle of a fan, does not collapse: every change around it would have it tried anew, with
+/// each of its neighbours.
 const MOST_FACES: usize = 64;
 
 /// A coarse mesh.
@@ -200,8 +200,8 @@ impl<'a> Mesh<'a> {
         if price.is_finite() { price } else { f64::MAX }
     }
 
-    /// Whether `v`, whose neighbours are `near`, can move onto `u` without turning a face over or, unless holes and handles
-    /// may close, changing the topology.
+    /// Whether `v`, whose neighbours are `near`, can move onto `u` without turning a face over or, unless holes and
+    /// handles may close, changing the topology.
     fn may_collapse(&self, v: u32, u: u32, near: &[u32]) -> bool {
         let opposite: Vec<u32> = (self.faces_of(v).map(|f| self.faces[f as usize]))
             .filter(|face| face.contains(&u))
@@ -218,8 +218,8 @@ impl<'a> Mesh<'a> {
         })
     }
 
-    /// The link condition: `opposite` the edge is who is beside both of its ends, and no edge inside joins two vertices of
-    /// the boundary, which would pinch the surface.
+    /// The link condition: `opposite` the edge is who is beside both of its ends, and no edge inside joins two vertices
+    /// of the boundary, which would pinch the surface.
     fn keeps_topology(&self, v: u32, u: u32, near: &[u32], opposite: &[u32]) -> bool {
         let common = near.iter().filter(|&&w| w != u && self.adjacent(w, u)).count();
         common == opposite.len() && !(opposite.len() == 2 && self.on_boundary(v))

@@ -4,11 +4,14 @@ use super::KeyPointError;
 use crate::skinning::FitParameters;
 use serde::{Deserialize, Serialize};
 
-/// What can be turned. The defaults need no turning.
+/// More candidates would have to be tried on a mesh that is not coarse any more.
+const MOST_CANDIDATES: usize = 1000;
+
+/// What can be turned. The defaults need no turning. Where no range is told it is 0 … 1,000,000, for counts 1 and more.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(default, rename_all = "kebab-case")]
 pub struct Parameters {
-    /// How many vertices may become key points (paper: 100).
+    /// How many vertices may become key points, 1 … 1000 (paper: 100).
     pub candidates: usize,
     /// ε, the mean vertex distance in the unit sphere at which there are points enough (paper: 0.03).
     pub error: f64,
@@ -71,6 +74,9 @@ impl Parameters {
             if count == Some(0) {
                 return refuse(name, 0.0, "at least 1");
             }
+        }
+        if self.candidates > MOST_CANDIDATES {
+            return refuse("candidates", self.candidates as f64, "at most 1000");
         }
         let shares = [
             ("error", self.error),

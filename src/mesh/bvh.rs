@@ -1,5 +1,5 @@
-//! The nearest point of a triangle mesh, by a hierarchy of bounding boxes: of the faces, and of their normals, lest a place
-//! that faces away from all of a sheet ask every face.
+//! The nearest point of a triangle mesh, by a hierarchy of bounding boxes: of the faces, and of their normals, lest a
+//! place that faces away from all of a sheet ask every face.
 
 use super::face::{self, nearest_in_triangle};
 use glam::DVec3;

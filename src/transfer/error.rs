@@ -39,6 +39,16 @@ pub enum TransferError {
         /// Source or target.
         side: &'static str,
     },
+    /// A parameter is out of its range.
+    #[error("{name} must be {range}, not {value}")]
+    Parameter {
+        /// Its name.
+        name: &'static str,
+        /// Its value.
+        value: f64,
+        /// What it may be.
+        range: &'static str,
+    },
     /// The weights of the key points could not be found.
     #[error(transparent)]
     Weights(#[from] WeightsError),

@@ -1,5 +1,6 @@
 //! The parameters of the transfer.
 
+use super::TransferError;
 use super::correspondence::Fitting;
 use serde::{Deserialize, Serialize};
 
@@ -9,12 +10,12 @@ use serde::{Deserialize, Serialize};
 pub struct Parameters {
     /// How motions are carried over.
     pub method: Method,
-    /// At most so many bones are sought in the source by [`Method::Bones`].
+    /// At most so many bones are sought in the source by [`Method::Bones`]; 1 at least.
     pub bones: usize,
     /// How the source is bent into the target by [`Method::Gradients`] and [`Method::Posed`].
     pub fitting: Fitting,
     /// By these two a face that ends off by so much (the Frobenius norm of the difference of maps) from what is asked of it
-    /// counts half; 0: all count in full, as in the paper.
+    /// counts half; 0 … 1,000,000; 0: all count in full, as in the paper.
     pub doubt: f64,
     /// Vertices of the target that, by these two, go exactly as far as the source does where it corresponds, but for the
     /// size: feet that shall stand.
@@ -24,6 +25,22 @@ pub struct Parameters {
 impl Default for Parameters {
     fn default() -> Self {
         Self { method: Method::default(), bones: 32, fitting: Fitting::default(), doubt: 0.2, pinned: Vec::new() }
+    }
+}
+
+impl Parameters {
+    /// Refuses values outside their ranges (NaN included).
+    pub fn check(&self) -> Result<(), TransferError> {
+        if self.bones == 0 {
+            return Err(TransferError::Parameter { name: "bones", value: 0.0, range: "at least 1" });
+        }
+        let Fitting { smoothness, identity, closeness } = &self.fitting;
+        let single = [("smoothness", *smoothness), ("identity", *identity), ("doubt", self.doubt)];
+        let closeness = closeness.iter().map(|&value| ("closeness", value));
+        match single.into_iter().chain(closeness).find(|(_, value)| !(0.0..=1e6).contains(value)) {
+            Some((name, value)) => Err(TransferError::Parameter { name, value, range: "between 0 and 1000000" }),
+            None => Ok(()),
+        }
     }
 }
 

@@ -47,6 +47,7 @@ impl Prepared {
         proposer: Option<Arc<Proposer>>,
         observer: &mut dyn Observer,
     ) -> Result<Self, TransferError> {
+        parameters.check()?;
         let mut steps = Stopwatch::new(observer);
         let acting = source.acting();
         let sequences = (acting.as_ref(), target);

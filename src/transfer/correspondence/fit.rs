@@ -19,7 +19,7 @@ use crate::transfer::surface::Surface;
 use glam::{DMat3, DVec3};
 use serde::{Deserialize, Serialize};
 
-/// How the source is bent.
+/// How the source is bent; all from 0 to 1,000,000.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(default, rename_all = "kebab-case")]
 pub struct Fitting {

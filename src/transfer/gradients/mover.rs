@@ -84,6 +84,7 @@ impl Mover {
         proposer: Option<Arc<Proposer>>,
         observer: &mut dyn Observer,
     ) -> Result<Self, TransferError> {
+        parameters.check()?;
         let mut steps = Stopwatch::new(observer);
         let acting = source.acting();
         let source = acting.as_ref();
@@ -125,34 +126,13 @@ impl Mover {
         let pairs = checked(&self.source, &self.target, pairs, &mut warnings)?;
         let markers = self.places(&pairs);
         let hints = self.places(&guides(self.proposer.as_deref(), &pairs));
-        let both = [&*markers, &*hints];
-        let place = |&vertex: &u32| self.target.place.get(vertex as usize).copied();
-        let mut pins: Vec<u32> = self.parameters.pinned.iter().filter_map(place).collect();
-        if pins.len() < self.parameters.pinned.len() {
-            warnings.push(Warning::new("no-such-pin", "some pinned vertices do not exist on the target".to_owned()));
-        }
-        pins.sort_unstable();
-        pins.dedup();
         let points: Vec<(DVec3, DVec3)> = markers
             .iter()
             .map(|&[here, there]| (self.source.positions[here as usize], self.target.positions[there as usize]))
             .collect();
         let alignment = align(&points);
-        let posed = self.parameters.method == Method::Posed;
-        let rounds = if posed { TURNS } else { 0 };
-        let share = |round: usize, done: f64| 0.8 * (round as f64 + done) / (rounds + 1) as f64;
-        let mut posture = Posture::unturned(&self.target);
-        let (mut correspondence, mut shapes) =
-            self.correspond(alignment, both, &posture.positions, |done| steps.at("correspondence", share(0, done)))?;
-        steps.end("correspondence", share(0, 1.0))?;
-        for round in 1..=rounds {
-            posture = self.posture(&correspondence, alignment)?;
-            steps.end("posture", share(round, 0.0))?;
-            (correspondence, shapes) = self.correspond(alignment, both, &posture.positions, |done| {
-                steps.at("correspondence", share(round, done))
-            })?;
-            steps.end("correspondence", share(round, 1.0))?;
-        }
+        let (posture, correspondence, shapes) = self.postured(alignment, [&markers, &hints], &mut steps)?;
+        let pins = self.pins(&mut warnings);
         let scene = Scene {
             source: &self.source,
             poses: &self.poses,
@@ -162,7 +142,7 @@ impl Mover {
             turns: &posture.turns,
             turned: &posture.positions,
             pins: &pins,
-            doubt: self.parameters.doubt.max(0.0),
+            doubt: self.parameters.doubt,
         };
         let poses = carry(&scene).map_err(degenerate)?;
         steps.end("poses", 1.0)?;
@@ -193,6 +173,43 @@ impl Mover {
     fn places(&self, pairs: &[Pair]) -> Vec<[u32; 2]> {
         let places = |pair: &Pair| [self.source.place[pair.source as usize], self.target.place[pair.target as usize]];
         pairs.iter().map(places).collect()
+    }
+
+    /// The places of the target that are pinned, ascending.
+    fn pins(&self, warnings: &mut Vec<Warning>) -> Vec<u32> {
+        let place = |&vertex: &u32| self.target.place.get(vertex as usize).copied();
+        let mut pins: Vec<u32> = self.parameters.pinned.iter().filter_map(place).collect();
+        if pins.len() < self.parameters.pinned.len() {
+            warnings.push(Warning::new("no-such-pin", "some pinned vertices do not exist on the target".to_owned()));
+        }
+        pins.sort_unstable();
+        pins.dedup();
+        pins
+    }
+
+    /// The target in the source's posture, by [`Method::Posed`], and the source bent into it: posture and correspondence
+    /// tell each other in turn. The shapes are those of the last bending.
+    fn postured(
+        &self,
+        alignment: Alignment,
+        both: [&[[u32; 2]]; 2],
+        steps: &mut Stopwatch<'_>,
+    ) -> Result<(Posture, Correspondence, Vec<Vec<DVec3>>), TransferError> {
+        let rounds = if self.parameters.method == Method::Posed { TURNS } else { 0 };
+        let share = |round: usize, done: f64| 0.8 * (round as f64 + done) / (rounds + 1) as f64;
+        let mut posture = Posture::unturned(&self.target);
+        let mut round = 0;
+        loop {
+            let told = |done: f64| steps.at("correspondence", share(round, done));
+            let (correspondence, shapes) = self.correspond(alignment, both, &posture.positions, told)?;
+            steps.end("correspondence", share(round, 1.0))?;
+            if round == rounds {
+                return Ok((posture, correspondence, shapes));
+            }
+            round += 1;
+            posture = self.posture(&correspondence, alignment)?;
+            steps.end("posture", share(round, 0.0))?;
+        }
     }
 
     /// Bends the source into the target at `positions` (#N) by places that belong together and others that may, and pairs
