@@ -21,6 +21,7 @@ impl Engine {
         let mover = match kept {
             Some((_, mover)) => mover,
             None => {
+                self.prepared = None;
                 self.room_for(Step::Faces(self.open_target()?.sizes()), self.open_sequence()?)?;
                 let proposer = Some(self.proposer()?);
                 let (source, target) = (self.open_sequence()?, self.open_target()?);

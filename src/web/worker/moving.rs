@@ -30,6 +30,7 @@ impl Engine {
         let mut prepared = match kept {
             Some((_, prepared)) => prepared,
             None => {
+                self.mover = None;
                 self.room_for(Step::Transfer(self.open_target()?.sizes()), self.open_sequence()?)?;
                 let proposer = if parameters.method.by_bones() { Some(self.proposer()?) } else { None };
                 let (source, target) = (self.open_sequence()?, self.open_target()?);
