@@ -6,11 +6,16 @@
 /// So few points are compared one by one.
 const FEW: usize = 8;
 
+/// A squared distance counts as nearly the same if it is not less than this share.
+const NEARLY: f64 = 0.9;
+
 /// A balanced k-d tree over points, laid out in place.
 #[derive(Clone, Debug)]
 pub struct KdTree<const D: usize> {
     points: Vec<[f64; D]>,
     numbers: Vec<u32>,
+    /// The box of all points, from the least to the greatest coordinates.
+    whole: [[f64; D]; 2],
 }
 
 impl<const D: usize> KdTree<D> {
@@ -29,7 +34,11 @@ impl<const D: usize> KdTree<D> {
             stack.push((from, middle, (axis + 1) % D));
             stack.push((middle + 1, to, (axis + 1) % D));
         }
-        Self { points: numbers.iter().map(|&i| points[i as usize]).collect(), numbers }
+        let bound = |pick: fn(f64, f64) -> f64, start: f64| {
+            std::array::from_fn(|axis| points.iter().map(|p| p[axis]).fold(start, pick))
+        };
+        let whole = [bound(f64::min, f64::INFINITY), bound(f64::max, f64::NEG_INFINITY)];
+        Self { points: numbers.iter().map(|&i| points[i as usize]).collect(), numbers, whole }
     }
 
     /// The number of the nearest point; `None` if there is none.
@@ -42,10 +51,20 @@ impl<const D: usize> KdTree<D> {
         self.nearest_within(f64::INFINITY, to, wanted)
     }
 
+    /// The number of the nearest point, if that is not `far` away; else of one that is nearly as near. What is far from a
+    /// surface is as far from many of its points, and would have to be compared with all of them.
+    pub fn nearest_roughly(&self, far: f64, to: &[f64; D]) -> Option<u32> {
+        self.search(Search { far: far * far, ..Search::new(self, to, |_| true) })
+    }
+
     /// The number of the nearest point that is `wanted` and nearer than `reach`; `None` if there is none.
     pub fn nearest_within(&self, reach: f64, to: &[f64; D], wanted: impl Fn(u32) -> bool) -> Option<u32> {
-        let mut search = Search { tree: self, to, wanted, apart: [0.0; D], best: reach * reach, found: None };
-        search.part(0, self.points.len(), 0, 0.0);
+        self.search(Search { best: reach * reach, ..Search::new(self, to, wanted) })
+    }
+
+    fn search<W: Fn(u32) -> bool>(&self, mut search: Search<'_, D, W>) -> Option<u32> {
+        let gap = search.apart.iter().map(|apart| apart * apart).sum();
+        search.part(0, self.points.len(), 0, gap);
         search.found
     }
 }
@@ -60,9 +79,17 @@ struct Search<'a, const D: usize, W> {
     /// The squared distance of what is found.
     best: f64,
     found: Option<u32>,
+    /// Beyond this squared distance only what is nearer by [`NEARLY`] is sought.
+    far: f64,
 }
 
-impl<const D: usize, W: Fn(u32) -> bool> Search<'_, D, W> {
+impl<'a, const D: usize, W: Fn(u32) -> bool> Search<'a, D, W> {
+    fn new(tree: &'a KdTree<D>, to: &'a [f64; D], wanted: W) -> Self {
+        let [low, high] = &tree.whole;
+        let apart = std::array::from_fn(|axis| (low[axis] - to[axis]).max(to[axis] - high[axis]).max(0.0));
+        Self { tree, to, wanted, apart, best: f64::INFINITY, found: None, far: f64::INFINITY }
+    }
+
     /// Searches a part of the tree, whose box is away by the square root of `gap`.
     fn part(&mut self, from: usize, end: usize, axis: usize, gap: f64) {
         if end - from <= FEW {
@@ -77,7 +104,8 @@ impl<const D: usize, W: Fn(u32) -> bool> Search<'_, D, W> {
         self.compare(middle);
         let before = self.apart[axis];
         let gap = gap - before * before + side * side;
-        if gap < self.best {
+        let enough = if self.best > self.far { NEARLY * self.best } else { self.best };
+        if gap < enough {
             self.apart[axis] = side;
             self.part(far.0, far.1, next, gap);
             self.apart[axis] = before;
@@ -113,6 +141,13 @@ mod tests {
             let odd = |i: u32| i % 2 == 1;
             let expected = (0..300).filter(|&i| odd(i)).min_by(|&a, &b| distance(a).total_cmp(&distance(b)));
             assert_eq!(tree.nearest_of(&to, odd), expected);
+            let outside = to.map(|x| x + 2.0);
+            let distance =
+                |i: u32| points[i as usize].iter().zip(&outside).map(|(a, b)| (a - b) * (a - b)).sum::<f64>();
+            let least = (0..300).map(distance).fold(f64::INFINITY, f64::min);
+            assert_eq!(tree.nearest(&outside).map(distance), Some(least));
+            assert_eq!(tree.nearest_roughly(9.0, &outside).map(distance), Some(least));
+            assert!(tree.nearest_roughly(1.0, &outside).is_some_and(|i| NEARLY * distance(i) <= least));
         }
         assert_eq!(tree.nearest_of(&[0.0; 4], |_| false), None);
         assert_eq!(KdTree::<2>::new(&[]).nearest(&[0.0; 2]), None);

@@ -18,6 +18,8 @@ const PULLS: [f64; 4] = [9.0, 90.0, 900.0, 9000.0];
 const ROUNDS: usize = 2;
 /// What a difference of unit normals counts, as a length in the unit ball.
 const NORMAL: f64 = 0.2;
+/// From what is farther away, normals counted, it does not matter which of the near points is the nearest.
+const FAR: f64 = 0.15;
 /// Cosine between normals below which a nearest point is none.
 const AGREE: f64 = 0.3;
 /// What lies farther from the source than this, in its radii, after the first rounds of growth has no twin there.
@@ -48,7 +50,7 @@ impl Ground {
     /// The nearest place on the source to a point with a normal, seen from the nearest vertex; `None` for a surface
     /// without faces.
     pub fn foot(&self, surface: &Surface, point: DVec3, normal: DVec3) -> Option<(Foot, DVec3, u32)> {
-        let vertex = self.tree.nearest(&key(point, normal))?;
+        let vertex = self.tree.nearest_roughly(FAR, &key(point, normal))?;
         let (foot, place) = surface.nearest_around(vertex, point)?;
         Some((foot, place, vertex))
     }
