@@ -7,6 +7,7 @@ pub mod doctor;
 pub mod dual;
 pub mod face;
 pub mod groups;
+pub mod kd_tree;
 pub mod laplacian;
 pub mod near;
 pub mod pieces;

@@ -2,6 +2,7 @@
 
 use super::DualGraph;
 use super::groups::Groups;
+use super::kd_tree::KdTree;
 use glam::DVec3;
 
 /// Faces of one piece that are asked for their nearest face on another piece; more are thinned out evenly.
@@ -29,18 +30,19 @@ pub fn bridges(graph: &DualGraph, centroids: &[DVec3]) -> Vec<[u32; 2]> {
     for (f, &p) in piece.iter().enumerate() {
         faces_of[p as usize].push(f as u32);
     }
-    let tree = KdTree::new(centroids);
+    let tree = KdTree::of_points(centroids);
+    let at = |face: u32| centroids[face as usize].to_array();
     let mut group = Groups::new(count);
     loop {
         let of_piece: Vec<u32> = (0..count as u32).map(|p| group.root(p)).collect();
+        let labels = tree.labels(|face| of_piece[piece[face as usize] as usize]);
         let mut best: Vec<Option<(f64, [u32; 2])>> = vec![None; count];
         for (own, &g) in faces_of.iter().zip(&of_piece) {
             let best = &mut best[g as usize];
             let step = own.len().div_ceil(ASKED);
             for &f in own.iter().step_by(step) {
                 let limit = best.map_or(f64::INFINITY, |(d, _)| d);
-                let other = |face: u32| of_piece[piece[face as usize] as usize] != g;
-                if let Some((d, face)) = tree.nearest(centroids[f as usize], limit, &other) {
+                if let Some((d, face)) = tree.nearest_other(limit, &at(f), &labels, g) {
                     *best = Some((d, [f, face]));
                 }
             }
@@ -70,7 +72,8 @@ pub fn beside(graph: &DualGraph, centroids: &[DVec3], areas: &[f64]) -> Vec<[u32
     for (f, &p) in piece.iter().enumerate() {
         faces_of[p as usize].push(f as u32);
     }
-    let tree = KdTree::new(centroids);
+    let tree = KdTree::of_points(centroids);
+    let at = |face: u32| centroids[face as usize].to_array();
     let mut pairs = Vec::new();
     for (own, faces) in (0_u32..).zip(&faces_of) {
         let reach = AROUND * faces.iter().map(|&f| areas[f as usize]).sum::<f64>().sqrt();
@@ -78,7 +81,7 @@ pub fn beside(graph: &DualGraph, centroids: &[DVec3], areas: &[f64]) -> Vec<[u32
         for _ in 0..(MOST_BESIDE / count).min(BESIDE) {
             let other = |face: u32| !known.contains(&piece[face as usize]);
             let nearest = faces.iter().step_by(faces.len().div_ceil(FELT)).fold((reach * reach, None), |best, &f| {
-                tree.nearest(centroids[f as usize], best.0, &other).map_or(best, |(d, face)| (d, Some([f, face])))
+                tree.nearest_within(best.0, &at(f), other).map_or(best, |(d, face)| (d, Some([f, face])))
             });
             let Some(pair) = nearest.1 else { break };
             known.push(piece[pair[1] as usize]);
@@ -101,71 +104,18 @@ pub fn contacts(graph: &DualGraph, centroids: &[DVec3], cell: &[u32], reach: f64
     for (f, &c) in cell.iter().enumerate() {
         faces_of[c as usize].push(f as u32);
     }
-    let tree = KdTree::new(centroids);
+    let tree = KdTree::of_points(centroids);
+    let at = |face: u32| centroids[face as usize].to_array();
     let mut contacts = Vec::new();
     for own in &faces_of {
         for &f in own.iter().step_by(own.len().div_ceil(FELT).max(1)) {
             let other = |face: u32| piece[face as usize] != piece[f as usize];
-            if let Some((_, face)) = tree.nearest(centroids[f as usize], reach * reach, &other) {
+            if let Some((_, face)) = tree.nearest_within(reach * reach, &at(f), other) {
                 contacts.push([f, face]);
             }
         }
     }
     contacts
-}
-
-/// A balanced k-d tree over points, laid out in place.
-pub(crate) struct KdTree<'a> {
-    points: &'a [DVec3],
-    order: Vec<u32>,
-}
-
-impl<'a> KdTree<'a> {
-    /// Sorts points into a tree.
-    pub(crate) fn new(points: &'a [DVec3]) -> Self {
-        let mut order: Vec<u32> = (0..points.len() as u32).collect();
-        let mut stack = vec![(0, points.len(), 0)];
-        while let Some((from, to, axis)) = stack.pop() {
-            if to - from < 2 {
-                continue;
-            }
-            let middle = (from + to) / 2;
-            let key = |i: &u32| (points[*i as usize][axis], *i);
-            order[from..to].select_nth_unstable_by(middle - from, |a, b| {
-                let ((x, i), (y, j)) = (key(a), key(b));
-                x.total_cmp(&y).then(i.cmp(&j))
-            });
-            stack.push((from, middle, (axis + 1) % 3));
-            stack.push((middle + 1, to, (axis + 1) % 3));
-        }
-        Self { points, order }
-    }
-
-    /// The nearest point closer than `limit` that is `wanted`, and its squared distance (`limit` is squared, too).
-    pub(crate) fn nearest(&self, to: DVec3, limit: f64, wanted: &dyn Fn(u32) -> bool) -> Option<(f64, u32)> {
-        let mut best = limit;
-        let mut found = None;
-        let mut stack = vec![(0, self.order.len(), 0, 0.0)];
-        while let Some((from, end, axis, gap)) = stack.pop() {
-            if from >= end || gap >= best {
-                continue;
-            }
-            let middle = (from + end) / 2;
-            let point = self.order[middle];
-            let d = self.points[point as usize].distance_squared(to);
-            if d < best && wanted(point) {
-                best = d;
-                found = Some((d, point));
-            }
-            let side = to[axis] - self.points[point as usize][axis];
-            let next = (axis + 1) % 3;
-            let (low, high) = ((from, middle), (middle + 1, end));
-            let (near, far) = if side < 0.0 { (low, high) } else { (high, low) };
-            stack.push((far.0, far.1, next, side * side));
-            stack.push((near.0, near.1, next, gap));
-        }
-        found
-    }
 }
 
 #[cfg(test)]

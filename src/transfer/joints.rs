@@ -6,11 +6,11 @@
 //! about the centre of the corresponding blend.
 
 use super::alignment::Alignment;
-use super::kd_tree::KdTree;
 use super::rig::Rig;
 use super::rig::blends::{Blend, blends};
 use super::rig::weights::{Row, main_bone};
 use super::surface::Surface;
+use crate::mesh::kd_tree::KdTree;
 use glam::{DAffine3, DVec3};
 use nalgebra::{Cholesky, DMatrix, Dyn};
 use std::collections::BTreeMap;
@@ -125,8 +125,7 @@ fn join_loose(source: &Surface, rig: &Rig, bones: &[(DVec3, DVec3, f64)], links:
         // The smallest group first: an eye joins the head, not the head the eye.
         let Some((own, vertices)) = members.iter().min_by_key(|(root, list)| (list.len(), **root)) else { return };
         let elsewhere = |u: u32| group[main[u as usize] as usize] != *own;
-        let tree =
-            tree.get_or_insert_with(|| KdTree::new(&source.positions.iter().map(DVec3::to_array).collect::<Vec<_>>()));
+        let tree = tree.get_or_insert_with(|| KdTree::of_points(&source.positions));
         let found = vertices.iter().step_by(vertices.len().div_ceil(ASKED)).filter_map(|&v| {
             let u = tree.nearest_of(&source.positions[v as usize].to_array(), elsewhere)?;
             Some((source.positions[v as usize].distance_squared(source.positions[u as usize]), v, u))

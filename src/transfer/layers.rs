@@ -4,11 +4,11 @@
 //! hands that hang beside it for one. It follows what lies beneath it on the target itself, as one garment and evened out.
 
 use super::fill::fill;
-use super::kd_tree::KdTree;
 use super::mend::{SHORT, SMALL};
 use super::rig::weights::{Averager, Row, main_bone};
 use super::surface::{Foot, Surface};
 use crate::mesh::groups::Groups;
+use crate::mesh::kd_tree::KdTree;
 use glam::DVec3;
 use std::collections::BTreeMap;
 

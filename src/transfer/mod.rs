@@ -22,7 +22,6 @@ mod fill;
 pub mod gradients;
 pub mod growth;
 pub mod joints;
-pub mod kd_tree;
 pub mod layers;
 pub mod mend;
 mod parameters;

@@ -5,10 +5,10 @@
 //! Jovan Popović, *Deformation transfer for triangle meshes*, SIGGRAPH 2004, §4. The system of each strength of the pull
 //! is factored once; a round is one solve.
 
-use super::kd_tree::KdTree;
 use super::surface::{Foot, Surface};
 use crate::linalg::cholesky::{Cholesky, NotPositiveDefinite};
 use crate::linalg::polar;
+use crate::mesh::kd_tree::KdTree;
 use crate::mesh::laplacian::Laplacian;
 use glam::{DMat3, DVec3};
 

@@ -1,10 +1,10 @@
 //! A mesh as the transfer sees it: welded, without loose vertices, at unit size.
 
-use super::kd_tree::KdTree;
 use super::ties::ties;
 use crate::mesh::ball::unit_ball;
 use crate::mesh::doctor;
 use crate::mesh::face::nearest_in_triangle;
+use crate::mesh::kd_tree::KdTree;
 use crate::mesh::pieces::{Pieces, pieces};
 use crate::mesh::{face, weld};
 use crate::sequence::Sequence;
@@ -244,8 +244,7 @@ impl Surface {
         if !self.place.contains(&u32::MAX) {
             return;
         }
-        let points: Vec<[f64; 3]> = self.positions.iter().map(DVec3::to_array).collect();
-        let tree = KdTree::new(&points);
+        let tree = KdTree::of_points(&self.positions);
         for (v, &given) in reference.iter().enumerate() {
             if self.place[v] == u32::MAX {
                 let at = self.inward(given).clamp(DVec3::splat(-1e6), DVec3::splat(1e6));

@@ -1,8 +1,7 @@
 //! Which pieces of a body belong together: a robot's shank hangs on its thigh, though no face joins them.
 
-use super::kd_tree::KdTree;
 use super::surface::Surface;
-use glam::DVec3;
+use crate::mesh::kd_tree::KdTree;
 
 /// Pieces farther apart than this, in radii, do not touch.
 const FAR: f64 = 0.06;
@@ -55,11 +54,10 @@ type Contact = ((u32, u32), f64);
 
 /// Each place, but for those of the largest piece, with the nearest of another piece, if that is within reach.
 fn contacts(surface: &Surface, pieces: &[Vec<u32>], piece: &[u32]) -> Vec<Contact> {
-    let at = |v: u32| surface.positions[v as usize];
-    let tree = KdTree::new(&surface.positions.iter().map(DVec3::to_array).collect::<Vec<_>>());
+    let tree = KdTree::of_points(&surface.positions);
     let nearest = |v: u32, reach: f64, wanted: &dyn Fn(u32) -> bool| {
-        let u = tree.nearest_within(reach, &at(v).to_array(), wanted)?;
-        Some(((v, u), at(v).distance(at(u))))
+        let (far, u) = tree.nearest_within(reach * reach, &surface.positions[v as usize].to_array(), wanted)?;
+        Some(((v, u), far.sqrt()))
     };
     let some = (0..surface.len() as u32).step_by(surface.len().div_ceil(ASKED));
     let gaps: Vec<f64> = some.filter_map(|v| Some(nearest(v, f64::INFINITY, &|u| u != v)?.1)).collect();

@@ -5,7 +5,7 @@
 
 use super::box_problem::Column;
 use super::surface::Surface;
-use crate::mesh::near::KdTree;
+use crate::mesh::kd_tree::KdTree;
 use glam::DVec3;
 
 /// Rows whose raw weights sum to less than this have no weights of their own.
@@ -57,9 +57,9 @@ fn normalise(row: &mut [f64]) -> bool {
 fn take_nearest(surface: &Surface, known: &[bool], rows: &mut [f64], count: usize) {
     let givers: Vec<u32> = (0..known.len() as u32).filter(|&v| known[v as usize]).collect();
     let places: Vec<DVec3> = givers.iter().map(|&v| surface.positions[v as usize]).collect();
-    let tree = KdTree::new(&places);
+    let tree = KdTree::of_points(&places);
     for v in (0..known.len()).filter(|&v| !known[v]) {
-        if let Some((_, nearest)) = tree.nearest(surface.positions[v], f64::INFINITY, &|_| true) {
+        if let Some(nearest) = tree.nearest(&surface.positions[v].to_array()) {
             let from = givers[nearest as usize] as usize * count;
             rows.copy_within(from..from + count, v * count);
         }

@@ -6,8 +6,8 @@
 
 use super::consensus::Consensus;
 use super::surface::Surface;
+use crate::mesh::kd_tree::KdTree;
 use crate::sequence::Sequence;
-use crate::transfer::kd_tree::KdTree;
 use crate::transfer::registration::{Effort, Ground, Known, Pin, Registration};
 use crate::transfer::spline::Spline;
 use crate::transfer::surface::Surface as Shape;

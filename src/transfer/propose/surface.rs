@@ -10,9 +10,9 @@ use super::distances::Distances;
 use super::paths::{Graph, Paths};
 use crate::mesh::doctor::outward;
 use crate::mesh::face::{self, nearest_in_triangle};
+use crate::mesh::kd_tree::KdTree;
 use crate::mesh::pieces::pieces;
 use crate::mesh::weld::weld;
-use crate::transfer::kd_tree::KdTree;
 use glam::DVec3;
 use std::collections::BinaryHeap;
 
@@ -263,8 +263,7 @@ fn farthest_now(waiting: &mut BinaryHeap<(u64, u32)>, distance: &[f64]) -> Optio
 
 /// Vertices without a sample in reach join the nearest as the crow flies; welded vertices the one that stands for them.
 fn reach_all(paths: &mut Paths, stands: &[u32], samples: &[u32], points: &[DVec3]) {
-    let places: Vec<[f64; 3]> = samples.iter().map(|&v| points[v as usize].to_array()).collect();
-    let tree = KdTree::new(&places);
+    let tree = KdTree::of_points(&samples.iter().map(|&v| points[v as usize]).collect::<Vec<_>>());
     for v in 0..stands.len() {
         if paths.label[v] != u32::MAX {
             continue;
