@@ -19,6 +19,9 @@ export const MOST_POINTS = 60;
  * @property {boolean} [given] placed, but not by the visitor: it came with the creatures
  */
 
+/** What the fit of given points depends on. */
+const FITTING = ['lambda', 'gamma-rotation', 'gamma-shear', 'hold'];
+
 /** @returns {Point} */
 export const fresh = (source) => Object.freeze({ source, target: null, state: 'missing', confidence: 0 });
 
@@ -29,7 +32,7 @@ export class KeyPoints {
   /** @param {import('./app.js').App} app */
   constructor(app) {
     this.app = app;
-    /** What follows from the points in use: `{points, weights, groups, error, energies}`. */
+    /** What follows from the points in use and the parameters they were found by: `{points, parameters, weights, groups, error, energies}`. */
     this.fitted = null;
     /** Whether the next click on the source adds a point. */
     this.adding = false;
@@ -79,7 +82,15 @@ export class KeyPoints {
 
   get #current() {
     const { used, fitted } = this;
-    return fitted && fitted.points.length === used.length && used.every(({ source }, i) => source === fitted.points[i]) ? fitted : null;
+    if (!fitted || fitted.points.length !== used.length || used.some(({ source }, i) => source !== fitted.points[i])) return null;
+    const parameters = this.#fitting;
+    return FITTING.every((name) => fitted.parameters[name] === parameters[name]) ? fitted : null;
+  }
+
+  /** The parameters that the points in use are fitted with: those that they were found by, also while others are tried. */
+  get #fitting() {
+    const { run, search } = this.app.doc;
+    return { ...this.app.about.keypoints, ...BEGINNING, ...(run?.search ?? search) };
   }
 
   get hasMotion() {
@@ -237,7 +248,7 @@ export class KeyPoints {
   }
 
   react(before, after) {
-    if (before.points === after.points && before.count === after.count) return;
+    if (before.points === after.points && before.count === after.count && before.run === after.run) return;
     this.app.changed('points');
     if (!this.#current) this.fit();
   }
@@ -247,11 +258,12 @@ export class KeyPoints {
     const points = this.used.map(({ source }) => source);
     if (!points.length || this.#current) return;
     const { run } = app.doc;
+    const parameters = this.#fitting;
     const known = run?.rounds && this.untouched && points.length === run.key_points.length;
-    const answer = known ? run : await app.work.run('points', 'weights', () => app.engine.call('fit', { points, parameters: this.parameters }));
+    const answer = known ? run : await app.work.run('points', 'weights', () => app.engine.call('fit', { points, parameters }));
     if (!answer) return;
     const { weights, groups, energies, rounds, fit_errors } = answer;
-    this.fitted = { points, weights, groups, energies, rounds, fit_errors, error: known ? run.errors.at(-1) : answer.error };
+    this.fitted = { points, parameters, weights, groups, energies, rounds, fit_errors, error: known ? run.errors.at(-1) : answer.error };
     app.changed('points');
     app.paint();
   }

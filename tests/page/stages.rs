@@ -162,6 +162,19 @@ fn how_things_were_before_the_first_is_not_counted() {
     let rounds = page
         .evaluate(&format!("sinew.app.keypoints.current.energies[{} - 1].length - 1", legend.as_str().unwrap_or("0")));
     assert!(last.starts_with(&format!("Round {rounds} of {rounds} · ")), "{last}");
+    // The same points of another search are fitted anew, and a step back is as it was.
+    let fitted =
+        "JSON.stringify([sinew.app.keypoints.current?.points, [...sinew.app.keypoints.current?.energies[0] ?? []]])";
+    let before = page.evaluate(fitted);
+    page.evaluate_within("sinew.app.keypoints.setParameter('lambda', 0.55).then(() => 0)", 60.0);
+    page.wait_until(&format!("sinew.app.keypoints.current && {IDLE}"), 10.0);
+    let of_run = "JSON.stringify([[...sinew.app.doc.run.key_points], [...sinew.app.doc.run.energies[0]]])";
+    let after = page.evaluate(fitted);
+    assert_eq!(after, page.evaluate(of_run));
+    assert_ne!(after, before);
+    page.press_with_control("z");
+    page.wait_until(&format!("sinew.app.keypoints.current && {IDLE}"), 10.0);
+    assert_eq!(page.evaluate(fitted), before);
 }
 
 #[test]
