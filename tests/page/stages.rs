@@ -152,6 +152,9 @@ fn how_things_were_before_the_first_is_not_counted() {
     assert!(
         said(&mut page, "replacement", 1000).starts_with(&format!("Replacement {replacements} of {replacements} · "))
     );
+    // The search begins with a point, and adds the second in its first step.
+    assert!(said(&mut page, "candidates", 0).contains("point 2 is vertex "));
+    page.wait_until("document.querySelector('#stage .pin-numbers .selected')?.textContent === '2'", 5.0);
     assert!(said(&mut page, "alternation", 0).starts_with("Before the first round · "));
     // The legend and the plot mean the same pose by the hardest, and the plot ends where the rounds do.
     let last = said(&mut page, "alternation", 1000);

@@ -105,7 +105,7 @@ function choicePlot(app) {
   const plot = ranking(step.errors, chosen, `Candidates of step ${shown + 1} by error`);
   return [
     plot, h('p', { class: 'small faint' },
-      `Error if a candidate becomes point ${pointOf(run, shown)}, from the best to the worst of ${step.errors.length}. Under the picture, “Choice” shows where they are, step by step.`)];
+      `Error if a candidate becomes point ${pointOf(shown)}, from the best to the worst of ${step.errors.length}. Under the picture, “Choice” shows where they are, step by step.`)];
 }
 
 function listSection(app) {

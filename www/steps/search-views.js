@@ -47,7 +47,7 @@ export const candidates = {
   first: ({ doc: { run } }) => (run?.steps.length ?? 1) - 1,
   where({ doc: { run } }, index) {
     const step = run?.steps[index];
-    return step ? `point ${pointOf(run, index)} is vertex ${step.chosen}: error ${ofSize(step.error)}` : '';
+    return step ? `point ${pointOf(index)} is vertex ${step.chosen}: error ${ofSize(step.error)}` : '';
   },
   paint(app, index) {
     clay(app);
@@ -58,7 +58,11 @@ export const candidates = {
     app.stage.paint(['paint_vertices', candidateField(app, run, step), low, high, ERROR]);
     app.stage.mark(facesAt(app.sequence.faces, step.candidates), MARK.point);
   },
-  pins: ({ doc: { run } }, index) => (run?.steps ?? []).slice(0, index + 1).map(({ chosen }, i) => ({ index: i, pin: { vertex: chosen, colour: i, selected: i === index } })),
+  pins({ doc: { run } }, index) {
+    if (!run?.steps.length) return [];
+    const added = [run.candidates[0], ...run.steps.slice(0, index + 1).map(({ chosen }) => chosen)];
+    return added.map((vertex, i) => ({ index: i, pin: { vertex, colour: i, selected: i === index + 1 } }));
+  },
   legend(app) {
     const { run } = app.doc;
     const index = app.place;
@@ -70,7 +74,7 @@ export const candidates = {
       map: ERROR,
       marks: [low, (low + high) / 2, high],
       exact: true,
-      unit: [swatch(MARK.point), `${plural(step.candidates.length, 'candidate')} tried as point ${pointOf(run, index)}; around each, the error that it leaves`],
+      unit: [swatch(MARK.point), `${plural(step.candidates.length, 'candidate')} tried as point ${pointOf(index)}; around each, the error that it leaves`],
     };
   },
 };
@@ -110,8 +114,8 @@ export const replacement = {
     : 'No candidate served better than a point that was chosen.' }),
 };
 
-/** The number of the point that a step of the search added: the first has nothing to be compared with. */
-export const pointOf = (run, step) => step + 1 + Math.max(0, run.key_points.length - run.steps.length);
+/** The number of the point that a step of the search added: it begins with the first candidate. */
+export const pointOf = (step) => step + 2;
 
 function rangeOf(values) {
   let [low, high] = [Infinity, -Infinity];
