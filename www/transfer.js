@@ -28,9 +28,9 @@ export class Transfer {
     this.app.edit({ method: method === this.app.about.transfer.method ? '' : method });
   }
 
-  /** Shows the target by another method in place of the source. @param {string} method '' for the source */
+  /** Shows the target by another method than that in force in place of the source. @param {string} method '' for the source */
   setRival(method) {
-    this.rival = method;
+    this.rival = method === this.method ? '' : method;
     this.#setOther(null);
     this.compare();
     this.app.changed('link');
@@ -47,6 +47,8 @@ export class Transfer {
   }
 
   react(before, after) {
+    // A method is not compared with itself.
+    if (this.rival && this.rival === this.method) this.setRival('');
     const same = before.open === after.open && before.target === after.target && before.method === after.method && before.count === after.count && before.points === after.points;
     if (!same && after.target) this.move();
   }

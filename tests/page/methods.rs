@@ -52,4 +52,11 @@ fn faces_carry_the_motion_and_methods_stand_side_by_side() {
     page.wait_until("!sinew.app.third && !document.querySelector('#export-light')", PATIENT);
     let file = page.evaluate_within("sinew.app.transfer.file('exact').then(({ blob }) => blob.size)", PATIENT);
     assert!(file.as_f64().is_some_and(|size| size > 10_000.0), "{file}");
+    // The one beside it takes its place: a method is not compared with itself.
+    step(&mut page, "transfer");
+    page.wait_until(&format!("sinew.app.third && {IDLE}"), PATIENT);
+    page.evaluate("document.querySelector('#control-variant-direct').click()");
+    page.wait_until(&format!("sinew.state().moves?.method === 'direct' && {IDLE}"), PATIENT);
+    let beside = "[sinew.app.third, sinew.app.transfer.rival, document.querySelector('#control-beside-it').value]";
+    assert_eq!(page.evaluate(beside), serde_json::json!([null, "", ""]));
 }
