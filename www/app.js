@@ -29,6 +29,7 @@ export class App extends EventTarget {
     super();
     this.engine = engine;
     this.stage = stage;
+    engine.trouble = (error) => this.say(error.message);
     /** The picture of the target, once there is one. @type {import('./stage.js').Stage|null} */
     this.second = null;
     /** Defaults and names, from the engine. */

@@ -5,7 +5,8 @@
  * `{id, result, helped}` (and how many results came from helpers so far), `{id, error}` (a sentence; the engine goes on) or
  * `{id, crash, memory}` (the engine is broken, and how many bytes it had). To cancel is to end the worker. A new one starts
  * from the module that is compiled already, gets back the open meshes, which the page keeps, and then the questions that
- * were waiting; so a cancel or a crash costs one step and nothing else.
+ * were waiting; so a cancel or a crash costs one step and nothing else. What breaks it while it starts is not tried again
+ * by itself.
  */
 
 import { bytes } from './format.js';
@@ -22,6 +23,14 @@ const MUCH = 2 ** 30;
 
 const NEVER_RAN = 'The engine could not be started in this browser. Sinew needs WebAssembly and module workers.';
 
+const NOT_AGAIN = 'The engine could not be started again. The browser may be short of memory: try once more, or load the page anew.';
+
+/** What is said where the engine breaks over what it is given back. */
+const LOST = {
+  restore: 'The engine broke when it took back the figure that is open, and goes on without it. Open it again, or a simpler one.',
+  restore_target: 'The engine broke when it took back the target, and goes on without it. Open it again, or a simpler one.',
+};
+
 export class Engine {
   /** @param {Promise<WebAssembly.Module>} module */
   constructor(module) {
@@ -30,7 +39,11 @@ export class Engine {
     this.next = 0;
     /** What a new worker must know: by the operation that gives it back. @type {Map<string, object>} */
     this.kept = new Map();
+    /** Hears of what went wrong outside of any question. @type {(error: Error) => void} */
+    this.trouble = () => {};
+    /** Whether the worker that is there has started, and whether any ever has. */
     this.alive = false;
+    this.ran = false;
     /** How many results the worker got from helpers, see crew.js. */
     this.helped = 0;
     /** What the engine says about itself: default parameters and options, creatures. */
@@ -45,6 +58,7 @@ export class Engine {
    * @returns {Promise<any>}
    */
   call(operation, payload, { progress, transfer = [], own = false } = {}) {
+    if (!this.worker) this.#start().catch(() => {});
     const id = this.next++;
     // What is handed over cannot be asked again.
     const message = transfer.length ? null : { operation, ...payload };
@@ -72,6 +86,7 @@ export class Engine {
   async #start() {
     const worker = new Worker(new URL('worker.js', import.meta.url), { type: 'module' });
     this.worker = worker;
+    this.alive = false;
     worker.addEventListener('message', ({ data }) => worker === this.worker && this.#hear(data));
     worker.addEventListener('error', (event) => {
       event.preventDefault();
@@ -85,7 +100,7 @@ export class Engine {
     worker.postMessage = post;
     if (worker !== this.worker) throw new Cancelled('Cancelled.');
     const about = this.call('start', { module }, { own: true });
-    about.then(() => (this.alive = true), () => {});
+    about.then(() => (this.alive = this.ran = true), () => {});
     for (const [operation, kept] of this.kept) this.call(operation, { kept }, { own: true }).catch(() => {});
     for (const message of held) post(...message);
     return about;
@@ -93,7 +108,7 @@ export class Engine {
 
   #hear({ id, progress, result, helped, error, crash, memory }) {
     if (crash !== undefined) {
-      this.#broken(crash, memory);
+      this.#broken(crash, memory, this.pending.get(id));
       return;
     }
     const call = this.pending.get(id);
@@ -110,19 +125,32 @@ export class Engine {
     }
   }
 
-  #broken(cause, memory = 0) {
+  #broken(cause, memory = 0, call = null) {
     console.error('The worker broke:', cause);
-    this.#restart(new Error(memory > MUCH ? FULL(bytes(memory)) : CRASHED));
+    if (!this.alive) this.#giveUp(new Error(this.ran ? NOT_AGAIN : NEVER_RAN));
+    else if (call?.own) this.#goOnWithout(call.message.operation);
+    else this.#restart(new Error(memory > MUCH ? FULL(bytes(memory)) : CRASHED));
+  }
+
+  /** Another attempt would fail in the same way: the next one is made when something is asked. */
+  #giveUp(error) {
+    this.worker.terminate();
+    this.worker = null;
+    for (const call of this.pending.values()) call.reject(error);
+    this.pending.clear();
+    this.trouble(error);
+  }
+
+  /** What was kept breaks the engine, and would do so again and again. */
+  #goOnWithout(operation) {
+    this.kept.delete(operation);
+    const error = new Error(LOST[operation]);
+    this.#restart(error, true);
+    this.trouble(error);
   }
 
   #restart(reason, all = false) {
     this.worker.terminate();
-    if (!this.alive && !(reason instanceof Cancelled)) {
-      // It never ran: another attempt would fail in the same way.
-      for (const call of this.pending.values()) call.reject(new Error(NEVER_RAN));
-      this.pending.clear();
-      return;
-    }
     const calls = [...this.pending].sort(([a], [b]) => a - b);
     this.pending.clear();
     this.#start().catch(() => {});

@@ -216,6 +216,18 @@ fn a_broken_engine_costs_one_step() {
     page.wait_until("sinew.state().parts === 3 && !sinew.state().busy", 20.0);
     let after = page.state();
     assert_eq!((&after["source"], &after["error"]), (&before["source"], &serde_json::Value::Null));
+    // What breaks it while it starts, or takes back what was open, is not tried for ever.
+    page.evaluate("window.module = sinew.app.engine.module; sinew.app.engine.module = Promise.resolve(0); sinew.app.engine.call('nothing', {}).catch(() => {})");
+    page.wait_until("sinew.state().error?.includes('could not be started again')", 10.0);
+    page.evaluate("sinew.app.dismiss(); sinew.app.engine.module = module; void sinew.app.parts.setCount(4)");
+    page.wait_until("sinew.state().parts === 4 && !sinew.state().busy && !sinew.state().error", 20.0);
+    page.evaluate("sinew.app.engine.kept.set('restore', null); sinew.app.engine.call('nothing', {}).catch(() => {})");
+    page.wait_until("sinew.state().error?.includes('goes on without it')", 10.0);
+    page.evaluate("sinew.app.dismiss(); void sinew.app.opener.openCreature({ name: 'snake', faces: 3000 })");
+    page.wait_until(
+        "sinew.state().source.name === 'snake' && sinew.state().parts && !sinew.state().busy && !sinew.state().error",
+        20.0,
+    );
 }
 
 /// Whether a point is where it was, on both sides.
