@@ -2,6 +2,7 @@
  * The key points of the source: finding them, using fewer or more of them, moving them by hand, and what follows from
  * those in use: their weights, the groups, the error.
  */
+import { makeRoom } from './room.js';
 import { stepNamed } from './steps/index.js';
 import { BEGINNING } from './steps/search-parameters.js';
 import { latest } from './work.js';
@@ -137,6 +138,7 @@ export class KeyPoints {
     // They are there a step back or on as well, unless others are: what was changed meanwhile is not about them.
     app.amend({ run, points, count: points.length }, (state) =>
       state.open === open && state.search === search && state.run === doc.run && state.points === doc.points);
+    makeRoom(app.history);
   }
 
   /** Points at some vertices, with what is known of them. */

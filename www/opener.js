@@ -7,10 +7,8 @@ import { plural } from './format.js';
 import { OPENING } from './history.js';
 import { unproposed } from './keypoints.js';
 import { readProject } from './project.js';
+import { makeRoom } from './room.js';
 import { WORTH_STOPPING } from './work.js';
-
-/** Figures that were open before the last one are held for undo up to this many bytes. */
-const MOST_HELD = 256 << 20;
 
 export class Opener {
   /** @param {import('./app.js').App} app */
@@ -104,7 +102,7 @@ export class Opener {
       // Errors and weights are the same either way up; the maps of a fit are not, and are found again.
       const run = before.run && { ...before.run, rounds: null };
       app.stay(() => app.edit({ open, run, points: unproposed(before.points) }));
-      this.#makeRoom();
+      makeRoom(app.history);
       return;
     }
     // A target stays: what is new is to move it as well. So do points in which there is work, where they mean the same.
@@ -117,19 +115,8 @@ export class Opener {
     this.linked = false;
     if (before.open) app.history.edit(patch, OPENING);
     else app.history.restart({ ...BLANK, ...patch }, OPENING);
-    this.#makeRoom();
+    makeRoom(app.history);
     app.react(before);
-  }
-
-  /** Lets undo go back over the last figure, and over those before it as far as there is room. */
-  #makeRoom() {
-    const held = new Set([this.app.doc.open]);
-    let bytes = 0;
-    this.app.history.trim(({ open }) => {
-      if (!held.has(open)) bytes += open.sequence.poses.byteLength;
-      held.add(open);
-      return held.size <= 2 || bytes <= MOST_HELD;
-    });
   }
 
   /** Says what an opening took away, if that was the visitor's own, and that it is not lost. */

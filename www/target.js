@@ -3,6 +3,7 @@ import { Cancelled } from './engine.js';
 import { collect } from './files.js';
 import { OPENING } from './history.js';
 import { fresh, unproposed } from './keypoints.js';
+import { makeRoom } from './room.js';
 import { latest } from './work.js';
 
 /**
@@ -63,6 +64,7 @@ export class Target {
     app.engine.keepTarget(sequence);
     const points = places?.(sequence.sizes.vertices) ?? (turned ? unproposed(app.doc.points) : app.doc.points.map(({ source: vertex }) => fresh(vertex)));
     app.edit({ target: { source, sequence }, points, ...(places && { count: points.length, run: null }) }, mark);
+    makeRoom(app.history);
     return true;
   }
 

@@ -304,6 +304,20 @@ fn undo_reopens_what_was_open() {
     }
     page.click("#redo");
     page.wait_until(&format!("sinew.state().source.name === 'snake' && {STILL}"), 60.0);
+    // The last target is held, those before it as far as there is room, what several states share once.
+    let held = page.evaluate(
+        "(async () => { const [{ History }, { makeRoom }] = await Promise.all(['history', 'room'].map((name) => import(new URL(`www/${name}.js`, location.href))));
+        const figure = () => ({ sequence: { poses: new Uint8Array(100 << 20) } });
+        const history = new History({ open: figure(), target: null, run: null });
+        const held = [];
+        for (let i = 0; i < 6; i++) {
+          for (const patch of [{ target: figure() }, { points: [] }]) history.edit(patch);
+          makeRoom(history);
+          held.push(history.past.length);
+        }
+        return held; })()",
+    );
+    assert_eq!(held, serde_json::json!([2, 4, 6, 8, 7, 7]));
 }
 
 #[test]
