@@ -33,7 +33,7 @@ export class KeyPoints {
   /** @param {import('./app.js').App} app */
   constructor(app) {
     this.app = app;
-    /** What follows from the points in use and the parameters they were found by: `{points, parameters, weights, groups, error, energies}`. */
+    /** What follows from the points in use and the parameters they were found by: `{points, parameters, weights, groups, error, energies, radius}`. */
     this.fitted = null;
     /** Whether the next click on the source adds a point. */
     this.adding = false;
@@ -264,8 +264,8 @@ export class KeyPoints {
     const known = run?.rounds && this.untouched && points.length === run.key_points.length;
     const answer = known ? run : await app.work.run('points', 'weights', () => app.engine.call('fit', { points, parameters }));
     if (!answer) return;
-    const { weights, groups, energies, rounds, fit_errors } = answer;
-    this.fitted = { points, parameters, weights, groups, energies, rounds, fit_errors, error: known ? run.errors.at(-1) : answer.error };
+    const { weights, groups, energies, rounds, fit_errors, radius } = answer;
+    this.fitted = { points, parameters, weights, groups, energies, rounds, fit_errors, radius, error: known ? run.errors.at(-1) : answer.error };
     app.changed('points');
     app.paint();
   }

@@ -34,27 +34,11 @@ function skinOf(current, vertices) {
   return skins.get(current);
 }
 
-/** The radius of the whole, in which errors are stated: of the ball around the middle of its box (src/mesh/ball.rs). */
-function radiusOf({ faces, reference }) {
-  const low = [Infinity, Infinity, Infinity];
-  const high = [-Infinity, -Infinity, -Infinity];
-  for (const v of faces) {
-    for (let k = 0; k < 3; k++) {
-      low[k] = Math.min(low[k], reference[3 * v + k]);
-      high[k] = Math.max(high[k], reference[3 * v + k]);
-    }
-  }
-  const from = low.map((x, k) => (x + high[k]) / 2);
-  let radius = 0;
-  for (const v of faces) radius = Math.max(radius, Math.hypot(reference[3 * v] - from[0], reference[3 * v + 1] - from[1], reference[3 * v + 2] - from[2]));
-  return radius || 1;
-}
-
 /** #V: how far each vertex is from where the pose has it after a round, in radii of the whole. */
 function distances(app, known, round) {
   if (!known.fields.has(round)) {
     const { reference } = app.sequence;
-    known.radius ??= radiusOf(app.sequence);
+    const { radius } = app.keypoints.current;
     const wanted = poseOf(app.sequence, known.pose);
     const { handles, indices, weights, K, matrices } = known.skin;
     const maps = matrices.subarray(12 * handles * round, 12 * handles * (round + 1));
@@ -70,7 +54,7 @@ function distances(app, known, round) {
         }
         sum += (at - wanted[3 * v + r]) ** 2;
       }
-      field[v] = Math.sqrt(sum) / known.radius;
+      field[v] = Math.sqrt(sum) / radius;
     }
     known.fields.set(round, field);
   }

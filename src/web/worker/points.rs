@@ -6,6 +6,8 @@ use super::values::{Reply, parsed, plain, put, sentence, single};
 use super::watcher;
 use crate::keypoints::{self, KeyPoints, Parameters, Rounds};
 use crate::memory::Step;
+use crate::mesh::ball::unit_ball;
+use crate::sequence::Sequence;
 use crate::skinning::Fit;
 use crate::weights::Weights;
 use glam::DAffine3;
@@ -21,7 +23,7 @@ impl Engine {
         let sequence = self.open_sequence()?;
         let found =
             keypoints::select_by(crew, sequence, &parameters, &mut watcher(progress)).await.map_err(sentence)?;
-        let reply = describe(&found.weights, &found.groups, &found.fits, &found.rounds)?;
+        let reply = describe(sequence, &found.weights, &found.groups, &found.fits, &found.rounds)?;
         put(&reply, "key_points", &Uint32Array::from(found.key_points.as_slice()))?;
         put(&reply, "errors", &Float64Array::from(found.errors.as_slice()))?;
         put(&reply, "candidates", &Uint32Array::from(found.candidates.as_slice()))?;
@@ -38,14 +40,17 @@ impl Engine {
         self.room_for(Step::KeyPoints(points.len()), self.open_sequence()?)?;
         let sequence = self.open_sequence()?;
         let fitted = keypoints::fit_all_by(crew, sequence, points, &parameters).await.map_err(sentence)?;
-        let reply = describe(&fitted.weights, &fitted.groups, &fitted.fits, &fitted.rounds)?;
+        let reply = describe(sequence, &fitted.weights, &fitted.groups, &fitted.fits, &fitted.rounds)?;
         put(&reply, "error", &fitted.error.into())?;
         Ok(reply)
     }
 }
 
-fn describe(weights: &Weights, groups: &[u32], fits: &[Fit], rounds: &[Rounds]) -> Reply {
+fn describe(sequence: &Sequence, weights: &Weights, groups: &[u32], fits: &[Fit], rounds: &[Rounds]) -> Reply {
     let reply: JsValue = Object::new().into();
+    // What errors are stated in.
+    let radius = unit_ball(&sequence.acting_faces(), sequence.reference()).1;
+    put(&reply, "radius", &radius.into())?;
     put(&reply, "weights", &single(&weights.values))?;
     put(&reply, "groups", &Uint32Array::from(groups))?;
     let energies: Array = fits.iter().map(|fit| Float64Array::from(fit.energies.as_slice())).collect();
