@@ -10,6 +10,9 @@ const MOST = 16;
 /** The pose that is hardest to follow: the one with the largest error. */
 export const hardest = ({ fit_errors: errors }) => errors.reduce((best, error, pose) => (error > errors[best] ? pose : best), 0);
 
+/** A share of the distances is told from so many of them. */
+const SAMPLE = 20_000;
+
 const skins = new WeakMap();
 
 /** The source as a skin that is moved by the rounds of one fit: the moment k is the round k. */
@@ -19,19 +22,31 @@ function skinOf(current, vertices) {
     const each = Math.min(MOST, handles);
     const indices = new Uint16Array(vertices * each);
     const weights = new Float32Array(vertices * each);
-    for (let v = 0; v < vertices; v++) {
-      const row = current.weights.subarray(v * handles, (v + 1) * handles);
-      const order = handles > MOST ? Array.from(row.keys()).sort((a, b) => row[b] - row[a]).slice(0, MOST) : Array.from(row.keys());
-      const sum = order.reduce((total, k) => total + row[k], 0) || 1;
-      order.forEach((k, i) => {
-        indices[v * each + i] = k;
-        weights[v * each + i] = row[k] / sum;
-      });
-    }
+    for (let v = 0; v < vertices; v++) takeLargest(current.weights, v * handles, handles, { indices, weights, from: v * each, each });
     const pose = hardest(current);
     skins.set(current, { pose, skin: { handles, indices, weights, K: each, matrices: current.rounds[pose] }, fields: new Map() });
   }
   return skins.get(current);
+}
+
+/** The largest `each` of `count` values from `first` on, as places and as shares of their sum. */
+function takeLargest(values, first, count, { indices, weights, from, each }) {
+  let end = from;
+  for (let k = 0; k < count; k++) {
+    const value = values[first + k];
+    if (end < from + each) end++;
+    else if (value <= weights[end - 1]) continue;
+    let i = end - 1;
+    for (; i > from && weights[i - 1] < value; i--) {
+      weights[i] = weights[i - 1];
+      indices[i] = indices[i - 1];
+    }
+    weights[i] = value;
+    indices[i] = k;
+  }
+  let sum = 0;
+  for (let i = from; i < end; i++) sum += weights[i];
+  for (let i = from; i < end; i++) weights[i] /= sum || 1;
 }
 
 /** #V: how far each vertex is from where the pose has it after a round, in radii of the whole. */
@@ -61,9 +76,16 @@ function distances(app, known, round) {
   return known.fields.get(round);
 }
 
+/** What two in a hundred values are above, as a sample of them tells. */
+function nearlyLargest(values) {
+  const step = Math.ceil(values.length / SAMPLE);
+  const some = values.filter((_, i) => i % step === 0).sort();
+  return some.at(-1 - Math.floor(0.02 * some.length));
+}
+
 /** The end of the colours: nearly the largest distance at the beginning. */
 function topOf(app, known) {
-  known.top ??= distances(app, known, 0).toSorted().at(-1 - Math.floor(0.02 * app.sequence.sizes.vertices)) || 1e-6;
+  known.top ??= nearlyLargest(distances(app, known, 0)) || 1e-6;
   return known.top;
 }
 

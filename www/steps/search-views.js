@@ -127,21 +127,31 @@ const nearests = new WeakMap();
 
 /** For each vertex the candidate nearest to it, as its place in the list. */
 function nearestOf(app, run) {
-  if (!nearests.has(run)) {
-    const { reference } = app.sequence;
-    const list = [...run.candidates];
-    const owners = new Uint32Array(reference.length / 3);
-    for (let v = 0; v < owners.length; v++) {
-      let best = Infinity;
-      list.forEach((c, i) => {
-        const distance = (reference[3 * v] - reference[3 * c]) ** 2 + (reference[3 * v + 1] - reference[3 * c + 1]) ** 2
-          + (reference[3 * v + 2] - reference[3 * c + 2]) ** 2;
-        if (distance < best) [best, owners[v]] = [distance, i];
-      });
-    }
-    nearests.set(run, owners);
-  }
+  if (!nearests.has(run)) nearests.set(run, nearest(app.sequence.reference, [...run.candidates]));
   return nearests.get(run);
+}
+
+/**
+ * For each vertex the nearest of some, as its place among them. A vertex lies near the one before it, as a rule, so the one
+ * nearest to that is tried first; then only those that are less than twice as far from it can be nearer.
+ */
+function nearest(reference, some) {
+  const distance = (a, b) => Math.sqrt((reference[3 * a] - reference[3 * b]) ** 2 + (reference[3 * a + 1] - reference[3 * b + 1]) ** 2
+    + (reference[3 * a + 2] - reference[3 * b + 2]) ** 2);
+  const around = some.map((own) => some.map((vertex, place) => ({ vertex, place, away: distance(own, vertex) })).sort((a, b) => a.away - b.away));
+  const owners = new Uint32Array(reference.length / 3);
+  let owner = 0;
+  for (let v = 0; v < owners.length; v++) {
+    const first = distance(v, some[owner]);
+    let least = first;
+    for (const { vertex, place, away } of around[owner]) {
+      if (away >= 2 * first) break;
+      const here = distance(v, vertex);
+      if (here < least) [least, owner] = [here, place];
+    }
+    owners[v] = owner;
+  }
+  return owners;
 }
 
 /** #V: the error of the candidate that a vertex lies nearest to; NaN where that was not tried. */
@@ -149,7 +159,9 @@ function candidateField(app, run, step) {
   const errors = new Map();
   step.candidates.forEach((vertex, i) => errors.set(vertex, step.errors[i]));
   const list = Array.from(run.candidates, (vertex) => errors.get(vertex) ?? NaN);
-  return Float32Array.from(nearestOf(app, run), (owner) => list[owner]);
+  const field = new Float32Array(app.sequence.sizes.vertices);
+  nearestOf(app, run).forEach((owner, v) => (field[v] = list[owner]));
+  return field;
 }
 
 /** The faces around some vertices. */
