@@ -28,15 +28,18 @@ export function most() {
 }
 
 /** Nobody else. */
-const ALONE = { size: 1, helped: 0, gather: () => {}, end: () => {} };
+const alone = (tell) => ({ size: 1, helped: 0, tell, gather: () => {}, end: () => {} });
 
-/** A crew of so many members for a task, or nobody else where helpers cannot be started. */
-export function crewOf(size, task) {
-  if (size <= 1) return ALONE;
+/**
+ * A crew of so many members for a task, or nobody else where helpers cannot be started.
+ * @param {(done: number, count: number) => void} tell hears how many items of a meeting are done
+ */
+export function crewOf(size, task, tell) {
+  if (size <= 1) return alone(tell);
   try {
-    return new Leader(task(), size);
+    return new Leader(task(), size, tell);
   } catch {
-    return ALONE;
+    return alone(tell);
   }
 }
 
@@ -44,9 +47,10 @@ class Leader {
   /**
    * @param {{module: WebAssembly.Module, kept: object, operation: string, payload: object}} task what a helper is to do
    * @param {number} size members, this one included
+   * @param {(done: number, count: number) => void} tell see {@link crewOf}
    */
-  constructor(task, size) {
-    this.size = size;
+  constructor(task, size, tell) {
+    Object.assign(this, { size, tell });
     /** How many results came from helpers. */
     this.helped = 0;
     this.meeting = -1;
@@ -163,6 +167,7 @@ class Leader {
       this.count = item + 1;
       this.found.length = this.count;
     }
+    this.tell(this.count - this.#missing().length, this.count);
   }
 
   #missing() {

@@ -262,7 +262,8 @@ export class KeyPoints {
     const { run } = app.doc;
     const parameters = this.#fitting;
     const known = run?.rounds && this.untouched && points.length === run.key_points.length;
-    const answer = known ? run : await app.work.run('points', 'weights', () => app.engine.call('fit', { points, parameters }));
+    const answer = known ? run : await app.work.run('points', 'weights', (progress) =>
+      app.engine.call('fit', { points, parameters }, { progress }));
     if (!answer) return;
     const { weights, groups, energies, rounds, fit_errors, radius } = answer;
     this.fitted = { points, parameters, weights, groups, energies, rounds, fit_errors, radius, error: known ? run.errors.at(-1) : answer.error };

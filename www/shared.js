@@ -1,6 +1,6 @@
 /**
  * The operations that a crew shares out: whether they are about the target or the source, how many members each is worth,
- * and what each member calls.
+ * and what each member calls. One with a `stage` has a single meeting, and its progress is that of the meeting.
  */
 export const shared = {
   keypoints: {
@@ -10,12 +10,14 @@ export const shared = {
   },
   fit: {
     target: false,
-    members: (engine, { points }, most) => engine.members_for_weights(points.length, false, most),
+    stage: 'weights',
+    members: (engine, { points }, most) => engine.members_for_weights(points, false, most),
     run: (engine, { points, parameters }, progress, crew) => engine.fit(points, parameters, crew),
   },
   target_weights: {
     target: true,
-    members: (engine, { points }, most) => engine.members_for_weights(points.length, true, most),
+    stage: 'weights',
+    members: (engine, { points }, most) => engine.members_for_weights(points, true, most),
     run: (engine, { points }, progress, crew) => engine.target_weights(points, crew),
   },
 };

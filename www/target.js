@@ -176,7 +176,8 @@ export class Target {
     const { target } = app.doc;
     const targets = paired.map((point) => point.target);
     if (!target || !targets.length || new Set(targets).size < targets.length) return;
-    const weights = await app.work.run('weights', 'weights', () => app.engine.call('target_weights', { points: targets }));
+    const weights = await app.work.run('weights', 'weights', (progress) =>
+      app.engine.call('target_weights', { points: targets }, { progress }));
     if (!weights || app.doc.target !== target) return;
     this.field = { points: paired.map(({ source }) => source), targets, weights };
     if (app.view === 'weights') app.paint();

@@ -9,6 +9,9 @@ import { shared } from './shared.js';
 /** Progress is told at most this often, in milliseconds. */
 const PROGRESS_EVERY = 60;
 
+/** The share of an operation that its meeting takes, where it has a single one. */
+const MEETING = 0.9;
+
 /** The methods that move vertices, not a skin. */
 const BY_FACES = new Set(['gradients', 'posed']);
 
@@ -53,9 +56,10 @@ let helped = 0;
 
 /** Runs an operation with as many helpers as it is worth; `crew` in the payload is the most members there may be. */
 async function together(operation, payload, progress) {
-  const { target, members, run } = shared[operation];
+  const { target, stage, members, run } = shared[operation];
   const size = members(engine, payload, payload.crew ?? most());
-  const crew = crewOf(size, () => ({ module: code, kept: engine.kept(target), operation, payload }));
+  const tell = (done, count) => stage && progress(stage, (MEETING * done) / count);
+  const crew = crewOf(size, () => ({ module: code, kept: engine.kept(target), operation, payload }), tell);
   try {
     await crew.gather();
     return await run(engine, payload, progress, crew);

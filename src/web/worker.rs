@@ -23,7 +23,7 @@ use crate::transfer::gradients::Mover;
 use crate::transfer::propose::Proposer;
 use crate::transfer::{self, Prepared, Transfer};
 use crate::view::colour::srgb_to_linear;
-use crate::weights::Biharmonic;
+use crate::weights::{Biharmonic, Weights};
 use crate::zoo::{self, Recipe};
 use glam::DVec3;
 use js_sys::{Array, Function, Object, Uint8Array, Uint32Array};
@@ -42,7 +42,7 @@ pub struct Engine {
     tree: Option<(Parameters, Segmenter)>,
     target: Option<Sequence>,
     /// What was prepared for the target, for the two together, and the last motion.
-    target_field: Option<Biharmonic>,
+    target_field: Option<(Biharmonic, Weights)>,
     proposer: Option<Arc<Proposer>>,
     prepared: Option<(transfer::Parameters, Prepared)>,
     moved: Option<Transfer>,

@@ -152,7 +152,10 @@ fn a_crew_of_workers_comes_to_the_same_answer_as_one() {
             for (const crew of [1, 3]) {
                 const parameters = { ...about.keypoints, points: 6 };
                 const run = await engine.call('keypoints', { parameters, crew });
-                told.push({ points: [...run.key_points], weights: [...run.weights], helped: engine.helped });
+                const shares = [];
+                const fitted = await engine.call('fit', { points: run.key_points, parameters, crew }, { progress: ({ done }) => shares.push(done) });
+                told.push({ points: [...run.key_points], weights: [...run.weights], helped: engine.helped,
+                    shares: shares.length, radii: run.radius / fitted.radius });
             }
             return told;
         })()",
@@ -163,6 +166,25 @@ fn a_crew_of_workers_comes_to_the_same_answer_as_one() {
     assert_eq!(alone["weights"], together["weights"]);
     assert_eq!(alone["helped"], 0);
     assert!(together["helped"].as_u64() > Some(0), "no helper did anything");
+    for answer in [alone, together] {
+        assert!(answer["shares"].as_u64() > Some(0) && answer["radii"] == 1, "{answer}");
+    }
+    // Weights that follow a point are those that are found from nothing.
+    let apart = page.evaluate_within(
+        "(async () => {
+            const { engine, about } = sinew.app;
+            const open = () => engine.call('target', { recipe: { ...about.recipe, name: 'camel', faces: 3000 } });
+            const ask = (...points) => engine.call('target_weights', { points });
+            await open();
+            await ask(10, 300, 900);
+            const followed = await ask(11, 300, 900);
+            await open();
+            const found = await ask(11, 300, 900);
+            return Math.max(...found.map((weight, i) => Math.abs(weight - followed[i])));
+        })()",
+        120.0,
+    );
+    assert!(apart.as_f64().is_some_and(|apart| apart < 1e-5), "{apart}");
 }
 
 #[test]

@@ -1,7 +1,7 @@
 //! The crew of workers, of which this is one: `www/crew.js`.
 
 use super::Engine;
-use crate::crew::{Crew, Shared, Threads};
+use crate::crew::{Crew, Shared};
 use crate::memory::{self, Step};
 use crate::sequence::Sequence;
 use js_sys::{Array, Uint8Array};
@@ -15,6 +15,10 @@ extern "C" {
     /// How many there are, this one included.
     #[wasm_bindgen(method, getter)]
     fn size(this: &Workers) -> usize;
+
+    /// Says that so many items of `count` are done, where there is nobody else.
+    #[wasm_bindgen(method)]
+    fn tell(this: &Workers, done: usize, count: usize);
 
     /// Comes to the next meeting, about so many items.
     #[wasm_bindgen(method)]
@@ -41,7 +45,7 @@ impl Crew for Workers {
         enough: &(dyn Fn(&T) -> bool + Sync),
     ) -> Vec<T> {
         if self.size() <= 1 {
-            return Threads.until(count, work, enough).await;
+            return self.alone(count, work, enough);
         }
         self.meet(count);
         while let Some(item) = self.next().await.as_f64() {
@@ -54,6 +58,17 @@ impl Crew for Workers {
             postcard::from_bytes(&Uint8Array::from(bytes).to_vec()).unwrap_or_else(|_| work(item))
         };
         self.results().iter().enumerate().map(received).collect()
+    }
+}
+
+impl Workers {
+    fn alone<T>(&self, count: usize, work: &dyn Fn(usize) -> T, enough: &dyn Fn(&T) -> bool) -> Vec<T> {
+        let mut results = Vec::new();
+        while results.len() < count && !results.last().is_some_and(enough) {
+            results.push(work(results.len()));
+            self.tell(results.len(), count);
+        }
+        results
     }
 }
 
@@ -74,12 +89,16 @@ impl Engine {
         self.sequence.as_ref().filter(worth).map_or(1, |of| members(Step::KeyPoints(points), of, most))
     }
 
-    /// The same for the weights of so many handles of the target, or for those of the source and the fits to its poses.
-    pub fn members_for_weights(&self, handles: usize, target: bool, most: usize) -> usize {
+    /// The same for the weights of handles of the target, or for those of the source and the fits to its poses. Weights that
+    /// are known leave little to do.
+    pub fn members_for_weights(&self, handles: &[u32], target: bool, most: usize) -> usize {
+        let count = handles.len();
         let (sequence, step) =
-            if target { (&self.target, Step::Weights(handles)) } else { (&self.sequence, Step::KeyPoints(handles)) };
-        let worth = |sequence: &&Sequence| sequence.sizes().vertices.saturating_mul(handles) >= WORTH_SHARING;
-        let most = most.min(handles);
+            if target { (&self.target, Step::Weights(count)) } else { (&self.sequence, Step::KeyPoints(count)) };
+        let known = self.target_field.as_ref().filter(|_| target).map_or(&[][..], |(_, weights)| &weights.handles);
+        let new = handles.iter().filter(|handle| !known.contains(handle)).count();
+        let worth = |sequence: &&Sequence| sequence.sizes().vertices.saturating_mul(new) >= WORTH_SHARING;
+        let most = most.min(new);
         sequence.as_ref().filter(worth).map_or(1, |of| members(step, of, most))
     }
 }

@@ -59,20 +59,26 @@ impl Engine {
         Ok(reply)
     }
 
-    /// The weights of some vertices of the target, #V rows × the number of them.
+    /// The weights of some vertices of the target, #V rows × the number of them; from those that were asked for before.
     pub async fn target_weights(&mut self, handles: &[u32], crew: &Workers) -> Reply {
         let retained = self.target_field.take();
         let target = self.open_target()?;
-        let field = match retained {
-            Some(field) => field,
+        let (field, weights) = match retained {
+            Some((field, before)) => {
+                let weights = field.update_by(crew, &before, handles).await;
+                (field, weights)
+            }
             None => {
                 self.room_for(Step::Weights(handles.len()), target)?;
-                Biharmonic::new(target.faces(), target.reference()).map_err(sentence)?
+                let field = Biharmonic::new(target.faces(), target.reference()).map_err(sentence)?;
+                let weights = field.weights_by(crew, handles).await;
+                (field, weights)
             }
         };
-        let weights = field.weights_by(crew, handles).await.map_err(sentence)?;
-        self.target_field = Some(field);
-        Ok(single(&weights.values).into())
+        let weights = weights.map_err(sentence)?;
+        let reply = single(&weights.values).into();
+        self.target_field = Some((field, weights));
+        Ok(reply)
     }
 
     /// The places that two creatures have in common: `{source, target}`, vertices of either.
