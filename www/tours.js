@@ -62,7 +62,7 @@ export const TOURS = [
       { step: 'keypoints', view: 'points', moves: true, text: 'A horse in motion, and a camel that has never moved. They share no triangle. What they share are places: the tip of the nose, the knee, the tail.' },
       { step: 'target', view: 'points', text: 'So pair them. A point has one colour and one number on both. When you bring a figure of your own, the places are proposed, and you say which are right.' },
       { step: 'transfer', view: 'weights', text: 'Each body spreads the same points over its own surface. A place on the camel that is half knee, half hoof belongs to the place on the horse of which the same is true: weights are a language that both speak.' },
-      { step: 'transfer', view: 'points', moves: true, text: 'Now hand over the maps. The camel walks. Drag a point on it, and the walk follows your hand: a dozen matrices are quickly blended.' },
+      { step: 'transfer', view: 'points', moves: true, text: 'Now hand over the motion. The camel walks. Drag a point on it, and the walk follows your hand: a few dozen matrices are quickly blended.' },
       { step: 'transfer', view: 'points', moves: true, method: 'direct', text: 'The paper hands the maps over just as they are. Look at the feet and the neck, where the two are built differently.' },
       { step: 'transfer', view: 'points', moves: true, method: '', text: 'Sinew finds the near-rigid bones in the horse’s motion first, finds them on the camel, and sets joint on joint. Take the result away under Export.' },
     ],
