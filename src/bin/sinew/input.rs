@@ -105,11 +105,19 @@ impl Input {
         let mut files = vec![read(path)?];
         files.extend(beside(path)?);
         files.extend(materials(path, &files[0]));
-        let mut mesh = open_in_order(&files, &options)?;
-        // It stands still, as it should.
-        mesh.warnings.retain(|warning| warning.code != "no-animation");
-        Ok(mesh)
+        Ok(at_rest(open_in_order(&files, &options)?))
     }
+
+    /// As [`Input::open`], for what needs no motion.
+    pub fn open_at_rest(&self) -> Result<Imported, Refusal> {
+        self.open().map(at_rest)
+    }
+}
+
+/// Without a note that it stands still, which it may.
+fn at_rest(mut mesh: Imported) -> Imported {
+    mesh.warnings.retain(|warning| warning.code != "no-animation");
+    mesh
 }
 
 /// Prints warnings to standard error.

@@ -32,7 +32,7 @@ pub struct Propose {
 impl Propose {
     /// Reads both meshes, proposes, and prints or writes the proposals.
     pub fn run(&self) -> Result<(), Refusal> {
-        let source = self.input.open()?;
+        let source = self.input.open_at_rest()?;
         let target = self.input.open_target(&self.target)?;
         let points = lists::vertices(&self.points)?;
         let pairs = self.pairs.as_deref().map(lists::pairs).transpose()?.unwrap_or_default();
@@ -50,8 +50,7 @@ impl Propose {
         if let Some(next) = proposals.next.and_then(|next| points.get(next)) {
             say(format_args!("most worth placing by hand: {next}"));
         }
-        let warnings: Vec<Warning> =
-            source.warnings.iter().chain(&target.warnings).filter(|w| w.code != "no-animation").cloned().collect();
+        let warnings: Vec<Warning> = source.warnings.iter().chain(&target.warnings).cloned().collect();
         print_warnings(&warnings);
         let Some(path) = &self.report else { return Ok(()) };
         let list: Vec<_> = points

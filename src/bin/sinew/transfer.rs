@@ -12,7 +12,7 @@ use glam::DVec3;
 use serde_json::{Map, Value, json};
 use sinew::clock;
 use sinew::export::animation::{Influences, Skin, SkinPose, exact, light};
-use sinew::import::{File, Imported, Up, natural_order};
+use sinew::import::{File, Imported, Up, may_be_needed, natural_order};
 use sinew::mesh::ball::unit_ball;
 use sinew::observer::Silent;
 use sinew::sequence::{Pose, Sequence};
@@ -225,7 +225,7 @@ impl Errors {
     }
 }
 
-/// The truth's files: those of a folder in natural order, without its reference pose.
+/// The truth's files: the meshes of a folder in natural order, without its reference pose.
 fn truth_files(paths: &[PathBuf]) -> Result<Vec<PathBuf>, Refusal> {
     let [folder] = paths else { return Ok(paths.to_vec()) };
     if !folder.is_dir() {
@@ -237,8 +237,9 @@ fn truth_files(paths: &[PathBuf]) -> Result<Vec<PathBuf>, Refusal> {
     for entry in entries {
         let path = entry.map_err(cannot)?.path();
         let rest = path.file_stem().is_some_and(|stem| stem == "rest" || stem == "reference");
-        if path.is_file() && !rest {
-            files.push(File { name: path.display().to_string(), bytes: Vec::new() });
+        let name = path.display().to_string();
+        if path.is_file() && may_be_needed(&name, false) && !rest {
+            files.push(File { name, bytes: Vec::new() });
         }
     }
     natural_order(&mut files);

@@ -32,7 +32,7 @@ pub struct WeightsCommand {
 impl WeightsCommand {
     /// Reads the mesh and the handles, and writes what was asked for.
     pub fn run(&self) -> Result<(), Refusal> {
-        let imported = self.input.open()?;
+        let imported = self.input.open_at_rest()?;
         let sequence = &imported.sequence;
         let handles = lists::vertices(&self.handles)?;
         let parameters = Parameters { joint: self.joint };
