@@ -1,9 +1,14 @@
 //! Stages, lessons and tours.
 
+#[path = "../common/floor.rs"]
+mod floor;
+
 use crate::harness::{Backend, Page, Screen};
 use crate::looking::VIEWS;
 use crate::opening::opened;
 use serde_json::{Value, json};
+use sinew::export::animation::exact;
+use sinew::zoo::{self, Recipe};
 
 const SMALL: &str = "#v1;zoo=horse;faces=3000;poses=8;k.points=6;t=reference";
 const IDLE: &str = "!sinew.state().busy && sinew.state().drawn";
@@ -178,6 +183,19 @@ fn how_things_were_before_the_first_is_not_counted() {
     page.press_with_control("z");
     page.wait_until(&format!("sinew.app.keypoints.current && {IDLE}"), 10.0);
     assert_eq!(page.evaluate(fitted), before);
+    // On a floor, too, what is painted is what the engine's error is the mean of.
+    let horse = zoo::make(&Recipe { name: "horse".into(), faces: 2000, poses: 4, ..Recipe::default() });
+    let horse = horse.expect("a creature of the zoo").sequence;
+    page.drop_files(&[("floor.glb", &exact(&floor::on_a_floor(&horse, 30.0), None))]);
+    page.wait_until(&format!("sinew.state().source.name === 'floor.glb' && sinew.state().points && {IDLE}"), 60.0);
+    page.evaluate("sinew.app.setView('alternation'); sinew.app.setPlace(1000)");
+    let painted = page.evaluate(&format!(
+        "(([, field]) => field.slice(0, {0}).reduce((sum, far) => sum + far, 0) / {0})(sinew.app.stage.kept.paint[0])",
+        horse.reference().len()
+    ));
+    let error = page.evaluate("Math.max(...sinew.app.keypoints.current.fit_errors)");
+    let [painted, error] = [painted, error].map(|value| value.as_f64().unwrap_or(f64::NAN));
+    assert!((painted / error - 1.0).abs() < 1e-4, "{painted} is painted for {error}");
 }
 
 #[test]
