@@ -17,7 +17,7 @@ const MUCH: usize = 2;
 
 /// A vertex of more faces, the middle of a fan, does not collapse: every change around it would have it tried anew, with
 /// each of its neighbours.
-const MOST_FACES: usize = 64;
+const MOST_VALENCE: usize = 64;
 
 /// A coarse mesh.
 pub struct Coarse {
@@ -162,7 +162,7 @@ impl<'a> Mesh<'a> {
     }
 
     /// How many faces a vertex has.
-    fn faces(&self, v: u32) -> usize {
+    fn valence(&self, v: u32) -> usize {
         self.around[v as usize].len() - self.dead[v as usize] as usize
     }
 
@@ -181,7 +181,7 @@ impl<'a> Mesh<'a> {
 
     /// Puts the cheapest collapse of `v` into the heap.
     fn offer(&self, v: u32, keep: &[bool], heap: &mut Heap) {
-        if keep[v as usize] || self.faces(v) > MOST_FACES {
+        if keep[v as usize] || self.valence(v) > MOST_VALENCE {
             return;
         }
         let near = self.neighbours(v);
@@ -208,7 +208,7 @@ impl<'a> Mesh<'a> {
             .flat_map(|face| face.into_iter().filter(|&w| w != u && w != v))
             .collect();
         // Nobody may be left without a face.
-        let last = self.faces(v) == opposite.len() || opposite.iter().any(|&w| self.faces(w) < 2);
+        let last = self.valence(v) == opposite.len() || opposite.iter().any(|&w| self.valence(w) < 2);
         if opposite.is_empty() || last || !(self.closing || self.keeps_topology(v, u, near, &opposite)) {
             return false;
         }
@@ -319,9 +319,8 @@ mod tests {
         // Every other square of every other row is a hole.
         let (faces, points) = sheet(41);
         let is_hole = |square: usize| (square / 41) % 2 == 1 && (square % 41) % 2 == 1;
-        let holes =
-            |faces: &[[u32; 3]]| (0..).zip(faces).filter(|(f, _)| !is_hole(f / 2)).map(|(_, face)| *face).collect();
-        let faces: Vec<[u32; 3]> = holes(&faces);
+        let faces: Vec<[u32; 3]> =
+            faces.into_iter().enumerate().filter(|(f, _)| !is_hole(f / 2)).map(|(_, face)| face).collect();
         assert!(left(&faces, &points, 1000) <= 1240);
         assert_eq!(left(&faces, &points, 100), 200);
     }
