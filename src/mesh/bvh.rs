@@ -65,7 +65,8 @@ impl Bvh {
     /// Builds the tree over those of #F faces that are `wanted`; vertices are at finite positions.
     pub fn new(faces: &[[u32; 3]], positions: &[DVec3], wanted: impl Fn(u32) -> bool) -> Self {
         let centroids = face::centroids(faces, positions);
-        let normal = |f: u32| face::double_area_normal(face::corners(positions, faces[f as usize])).normalize_or_zero();
+        let normal = |&face: &[u32; 3]| face::double_area_normal(face::corners(positions, face)).normalize_or_zero();
+        let normals: Vec<DVec3> = faces.iter().map(normal).collect();
         let mut numbers: Vec<u32> = (0..faces.len() as u32).filter(|&f| wanted(f)).collect();
         let mut nodes = Vec::with_capacity(numbers.len());
         // Places still to be boxed, and the node whose second child they are.
@@ -76,13 +77,13 @@ impl Bvh {
             }
             let own: &mut [u32] = &mut numbers[from..to];
             let [low, high] = bounds(own.iter().flat_map(|&f| face::corners(positions, faces[f as usize])));
-            let normals = bounds(own.iter().map(|&f| normal(f)));
+            let facing = bounds(own.iter().map(|&f| normals[f as usize]));
             let number = nodes.len() as u32;
             if let Some(parent) = parent {
                 let parent: &mut Node = &mut nodes[parent as usize];
                 parent.second = number;
             }
-            nodes.push(Node { low, high, normals, from: from as u32, to: to as u32, second: 0 });
+            nodes.push(Node { low, high, normals: facing, from: from as u32, to: to as u32, second: 0 });
             if own.len() > LEAF {
                 let size = high - low;
                 let axis = if size.x >= size.y && size.x >= size.z { 0 } else { 1 + usize::from(size.z > size.y) };
@@ -95,7 +96,7 @@ impl Bvh {
             }
         }
         let triangles = numbers.iter().map(|&f| face::corners(positions, faces[f as usize])).collect();
-        let normals = numbers.iter().map(|&f| normal(f)).collect();
+        let normals = numbers.iter().map(|&f| normals[f as usize]).collect();
         Self { nodes, triangles, normals, numbers }
     }
 
