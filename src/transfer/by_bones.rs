@@ -62,7 +62,7 @@ impl Bones {
         steps.end("common places", 0.3)?;
         let bending = Bending::new(here, there, proposer)?;
         steps.end("systems", 0.5)?;
-        let rig = Rig::new(here, &poses, most.max(1));
+        let rig = Rig::new(here, &poses, most);
         steps.end("bones", 0.9)?;
         let telling: Vec<&[DVec3]> = rig.telling.iter().filter_map(|&p| Some(poses.get(p)?.as_slice())).collect();
         let allowed = mend::allowed(here, &telling);

@@ -10,7 +10,8 @@ use serde::{Deserialize, Serialize};
 pub struct Parameters {
     /// How motions are carried over.
     pub method: Method,
-    /// At most so many bones are sought in the source by [`Method::Bones`]; 1 at least.
+    /// At most so many bones are sought in the source by [`Method::Bones`]; 1 at least. One whose vertices lie apart on the
+    /// surface becomes several, so that there can be a few more.
     pub bones: usize,
     /// How the source is bent into the target by [`Method::Gradients`] and [`Method::Posed`].
     pub fitting: Fitting,
