@@ -5,6 +5,7 @@
 //! Guha, Dmitry V. Nekhayev. *Topology preserving edge contraction*. 1999. What cannot collapse without changing the
 //! topology stays, so that thin limbs stay limbs; only where that is far more than wanted, holes and handles close.
 
+use crate::linalg::outer::outer;
 use glam::{DMat3, DVec3};
 use std::cmp::Reverse;
 use std::collections::BinaryHeap;
@@ -41,7 +42,7 @@ impl Quadric {
 
     fn plane(normal: DVec3, point: DVec3, weight: f64) -> Self {
         let (n, d) = (normal, normal.dot(point));
-        let a = DMat3::from_cols(n * n.x, n * n.y, n * n.z) * weight;
+        let a = outer(n, n) * weight;
         Self { a, b: n * (d * weight), c: d * d * weight, area: 0.0 }
     }
 

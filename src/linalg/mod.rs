@@ -7,6 +7,7 @@ pub mod envelope;
 #[cfg(feature = "solvers")]
 mod front;
 pub mod jacobi;
+pub mod outer;
 pub mod polar;
 #[cfg(feature = "solvers")]
 pub mod principal;

@@ -6,6 +6,7 @@
 //! A61, 2005.
 
 use super::jacobi;
+use super::outer::outer;
 use super::polar::frobenius_squared;
 use glam::{DMat3, DQuat, DVec3};
 
@@ -54,7 +55,7 @@ impl Moments {
         self.weight += w;
         self.p += w * p;
         self.q += w * q;
-        self.qp += DMat3::from_cols(q * (w * p.x), q * (w * p.y), q * (w * p.z));
+        self.qp += outer(q, w * p);
         self.squares += w * (p.length_squared() + q.length_squared());
     }
 
@@ -82,7 +83,7 @@ impl Moments {
             return (DMat3::ZERO, 0.0);
         }
         let (p, q) = (self.p / self.weight, self.q);
-        let h = self.qp - DMat3::from_cols(q * p.x, q * p.y, q * p.z);
+        let h = self.qp - outer(q, p);
         let squares = self.squares - (self.p.length_squared() + self.q.length_squared()) / self.weight;
         (h, squares.max(0.0))
     }

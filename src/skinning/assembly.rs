@@ -2,6 +2,7 @@
 
 use super::fitter::Rig;
 use super::functions::{Axes, Functions, as_rows};
+use crate::linalg::outer::outer;
 use glam::{DMat3, DVec3};
 
 /// What a group of edges says about its rotation.
@@ -139,7 +140,7 @@ fn groups(rig: &Rig, functions: &Functions, links: &Links, points: &[DVec3], han
         for &(u, weight) in links.of(v) {
             let edge = here - points[u as usize];
             let half = 0.5 * weight * edge;
-            p[group as usize] += DMat3::from_cols(edge * half.x, edge * half.y, edge * half.z);
+            p[group as usize] += outer(edge, half);
             own += half;
             add_share(&mut shares, rig.groups[u as usize], half);
         }

@@ -19,6 +19,7 @@ use super::assembly::{Assembly, Group};
 use super::factor::Factor;
 use super::functions::{Axes, Functions, as_axes, as_rows};
 use super::rows::Rows;
+use crate::linalg::outer::outer;
 use crate::linalg::polar;
 use crate::linalg::rigid_fit::{Moments, RigidMotion};
 use glam::{DAffine3, DMat3, DVec3};
@@ -346,10 +347,6 @@ impl Fitter {
         };
         x.chunks_exact(4).zip(&self.at).map(map).collect()
     }
-}
-
-fn outer(a: DVec3, b: DVec3) -> DMat3 {
-    DMat3::from_cols(a * b.x, a * b.y, a * b.z)
 }
 
 /// `kᵀ x` of two n × 3 matrices.

@@ -1,5 +1,6 @@
 //! How the surface turns and stretches about each vertex (Eq. 6 to 14).
 
+use crate::linalg::outer::outer;
 use crate::linalg::polar;
 use crate::linalg::rigid_fit::Moments;
 use glam::{DMat3, DQuat, DVec3};
@@ -103,8 +104,4 @@ fn normals(faces: &[[u32; 3]], positions: &[DVec3]) -> Vec<DVec3> {
         face.iter().for_each(|&v| normals[v as usize] += normal);
     }
     normals.into_iter().map(|n| n.normalize_or_zero()).collect()
-}
-
-fn outer(a: DVec3, b: DVec3) -> DMat3 {
-    DMat3::from_cols(a * b.x, a * b.y, a * b.z)
 }

@@ -7,6 +7,7 @@
 
 use super::surface::{Foot, Surface};
 use crate::linalg::cholesky::{Cholesky, NotPositiveDefinite};
+use crate::linalg::outer::outer;
 use crate::linalg::polar;
 use crate::mesh::kd_tree::KdTree;
 use crate::mesh::laplacian::Laplacian;
@@ -177,7 +178,7 @@ impl Registration {
         for &([a, b], weight) in &self.edges {
             let (a, b) = (a as usize, b as usize);
             let (from, to) = ((rest[a] - rest[b]) * weight, at[a] - at[b]);
-            let share = DMat3::from_cols(to * from.x, to * from.y, to * from.z);
+            let share = outer(to, from);
             sums[a] += share;
             sums[b] += share;
         }

@@ -1,8 +1,10 @@
 //! The motion of the source asked of the target's faces.
 
-use super::operator::{deformations, gradients, outer};
+use super::operator::{deformations, gradients};
 use super::solver::Solver;
 use crate::linalg::cholesky::NotPositiveDefinite;
+use crate::linalg::outer::outer;
+use crate::linalg::polar::frobenius;
 use crate::mesh::face;
 use crate::transfer::alignment::Alignment;
 use crate::transfer::correspondence::Correspondence;
@@ -100,7 +102,7 @@ fn misfits(target: &Surface, maps: &[Vec<DMat3>], poses: &[Vec<DVec3>]) -> Vec<f
             let found = gradient.map(face::corners(pose, target.faces[f]), DVec3::ZERO);
             let n = gradient.normal;
             let off = found - (maps[f] - outer(maps[f] * n, n));
-            worst[f] = worst[f].max(crate::linalg::polar::frobenius(off));
+            worst[f] = worst[f].max(frobenius(off));
         }
     }
     worst

@@ -1,6 +1,7 @@
 //! Least squares over points: the normal equations of many small terms.
 
 use crate::linalg::cholesky::{Cholesky, NotPositiveDefinite, Ordering, Upper};
+use crate::linalg::outer::outer;
 use glam::{DMat3, DVec3};
 
 /// The sum of |Σᵤ xᵤ dᵤᵀ − R|² over terms, as a function of #U points x.
@@ -44,7 +45,7 @@ impl Terms {
         let mut wanted = wanted;
         for &(point, d) in parts {
             if let Place::Given(at) = self.places[point as usize] {
-                wanted -= super::operator::outer(at, d);
+                wanted -= outer(at, d);
             }
         }
         for (k, &(point, d)) in parts.iter().enumerate() {
@@ -62,7 +63,7 @@ impl Terms {
     /// Adds |Σᵤ cᵤ xᵤ − r|² with its weight.
     pub fn tie(&mut self, parts: &[(u32, f64)], wanted: DVec3, weight: f64) {
         let parts: Vec<(u32, DVec3)> = parts.iter().map(|&(point, c)| (point, c * DVec3::X)).collect();
-        self.add(&parts, super::operator::outer(wanted, DVec3::X), weight);
+        self.add(&parts, outer(wanted, DVec3::X), weight);
     }
 
     /// The number of the unknown that a point is; `None` for one that is given.

@@ -6,6 +6,7 @@
 //! says the same as the fourth vertex. Where no other face asks for t, it takes the value that is wanted of it, and what
 //! remains of a face is its three corners.
 
+use crate::linalg::outer::outer;
 use crate::mesh::face;
 use crate::transfer::surface::Surface;
 use glam::{DMat3, DVec3};
@@ -46,11 +47,6 @@ impl Gradient {
         }
         map
     }
-}
-
-/// x yᵀ.
-pub fn outer(x: DVec3, y: DVec3) -> DMat3 {
-    DMat3::from_cols(x * y.x, x * y.y, x * y.z)
 }
 
 /// #F gradients of a surface in its reference pose.

@@ -17,6 +17,7 @@ use super::correspondence::fit::{face_normals, normals_at};
 use super::gradients::solver::Solver;
 use super::surface::Surface;
 use crate::linalg::cholesky::NotPositiveDefinite;
+use crate::linalg::outer::outer;
 use crate::linalg::rigid_fit::best_rotation;
 use crate::mesh::face;
 use glam::{DMat3, DVec3};
@@ -111,8 +112,8 @@ fn rotations(
         let (a, b, total) = middles[part];
         let total = total.max(f64::MIN_POSITIVE);
         let (p, q) = (from[face] - a / total, to[partner] - b / total);
-        normals[part] += super::gradients::operator::outer(weight * own[partner], other[face]);
-        places[part].0 += super::gradients::operator::outer(weight * q, p);
+        normals[part] += outer(weight * own[partner], other[face]);
+        places[part].0 += outer(weight * q, p);
         places[part].1 += weight * p.length() * q.length();
     });
     let rotation = |part: usize| {

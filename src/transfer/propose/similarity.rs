@@ -6,6 +6,7 @@
 //! Journal of the Optical Society of America A 4(4), 1987, section 2.D): that of least squares is too small where places are
 //! uncertain, and limbs would shrink a little with every round.
 
+use crate::linalg::outer::outer;
 use crate::linalg::rigid_fit::best_rotation;
 use glam::{DMat3, DVec3};
 
@@ -43,7 +44,7 @@ impl Similarity {
         let (mut spread, mut there) = (0.0, 0.0);
         for (w, p, q) in pairs {
             let (p, q) = (p - from, q - to);
-            h += DMat3::from_cols(q * (w * p.x), q * (w * p.y), q * (w * p.z));
+            h += outer(q, w * p);
             spread += w * p.length_squared();
             there += w * q.length_squared();
         }
