@@ -77,7 +77,7 @@ fn turn(centred: &[(DVec3, DVec3)]) -> DMat3 {
     // Mean distance, not squared: one misplaced pair counts as one.
     let apart = |turn: DMat3| centred.iter().map(|p| (turn * p.0 - p.1).length()).sum::<f64>();
     let upright = apart(DMat3::IDENTITY);
-    let (best, least) = axis_turns().into_iter().map(|t| (t, apart(t))).fold(
+    let (best, least) = axis_turns().map(|t| (t, apart(t))).fold(
         (DMat3::IDENTITY, upright),
         // Another turn than none must be clearly better: pairs in a plane fit several.
         |best, next| if next.1 < 0.999 * best.1 { next } else { best },
@@ -95,17 +95,10 @@ fn turn(centred: &[(DVec3, DVec3)]) -> DMat3 {
 }
 
 /// The 24 rotations that carry axes to axes, the identity first.
-fn axis_turns() -> Vec<DMat3> {
+pub fn axis_turns() -> impl Iterator<Item = DMat3> {
     let axes = [DVec3::X, DVec3::Y, DVec3::Z, DVec3::NEG_X, DVec3::NEG_Y, DVec3::NEG_Z];
-    let mut turns = Vec::with_capacity(24);
-    for x in axes {
-        for y in axes {
-            if x.dot(y) == 0.0 {
-                turns.push(DMat3::from_cols(x, y, x.cross(y)));
-            }
-        }
-    }
-    turns
+    let all = axes.into_iter().flat_map(move |x| axes.map(|y| (x, y)));
+    all.filter(|(x, y)| x.dot(*y) == 0.0).map(|(x, y)| DMat3::from_cols(x, y, x.cross(y)))
 }
 
 #[cfg(test)]
@@ -115,6 +108,14 @@ mod tests {
     fn cloud() -> Vec<DVec3> {
         let coordinate = |i: usize, k: usize| ((i * 7 + k * 5 + 3) as f64 * 0.618_034).fract() - 0.5;
         (0..8).map(|i| DVec3::new(coordinate(i, 0), 2.0 * coordinate(i, 1), coordinate(i, 2))).collect()
+    }
+
+    #[test]
+    fn turns_of_the_axes_are_those_of_a_cube() {
+        let turns: Vec<DMat3> = axis_turns().collect();
+        assert_eq!((turns.len(), turns[0]), (24, DMat3::IDENTITY));
+        assert!(turns.iter().all(|turn| turn.determinant() == 1.0));
+        assert!((1..24).all(|i| !turns[..i].contains(&turns[i])));
     }
 
     #[test]

@@ -9,7 +9,8 @@ use super::crowd::{COMPANY, CONSIDERED, Crowd, Figures};
 use super::similarity::Similarity;
 use super::starts::{Pair, Places, TELLING, laid, starts};
 use super::surface::Surface;
-use super::ways::{Way, half_turns, turns};
+use super::ways::{Way, half_turns};
+use crate::transfer::alignment::axis_turns;
 use glam::DMat3;
 
 /// How far points listen in the rounds that find the places.
@@ -160,7 +161,7 @@ fn ways(figures: Figures) -> Vec<Way> {
         let scored = turns.into_iter().map(|turn| (score(&turn), turn));
         scored.min_by(|a, b| a.0.total_cmp(&b.0)).unwrap_or((f64::MAX, DMat3::IDENTITY))
     };
-    let turned = best(turns());
+    let turned = best(axis_turns().skip(1).collect());
     let first = if turned.0 < score(&DMat3::IDENTITY) { turned.1 } else { DMat3::IDENTITY };
     let half_round = best(half_turns().map(|half| half * first).to_vec());
     let mut turns = vec![DMat3::IDENTITY];

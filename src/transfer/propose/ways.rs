@@ -28,14 +28,6 @@ impl Way {
     }
 }
 
-/// The 23 turns of a cube other than none.
-pub fn turns() -> Vec<DMat3> {
-    let axes = [DVec3::X, DVec3::Y, DVec3::Z, DVec3::NEG_X, DVec3::NEG_Y, DVec3::NEG_Z];
-    let all = axes.iter().flat_map(|&x| axes.iter().map(move |&y| (x, y)));
-    let square = all.filter(|(x, y)| x.dot(*y) == 0.0).map(|(x, y)| DMat3::from_cols(x, y, x.cross(y)));
-    square.filter(|turn| *turn != DMat3::IDENTITY).collect()
-}
-
 /// The three turns half round.
 pub fn half_turns() -> [DMat3; 3] {
     let signs = [DVec3::new(1.0, -1.0, -1.0), DVec3::new(-1.0, 1.0, -1.0), DVec3::new(-1.0, -1.0, 1.0)];
