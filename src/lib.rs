@@ -24,6 +24,8 @@ pub mod look;
 pub mod memory;
 pub mod mesh;
 pub mod observer;
+#[cfg(feature = "solvers")]
+pub mod poses;
 pub mod segmentation;
 pub mod sequence;
 #[cfg(feature = "solvers")]

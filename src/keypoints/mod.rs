@@ -22,7 +22,6 @@ mod geodesic;
 mod leftover;
 mod literal;
 mod parameters;
-mod poses;
 mod result;
 mod search;
 mod select;

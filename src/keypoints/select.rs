@@ -4,7 +4,6 @@ use super::candidates::candidates;
 use super::full::Full;
 use super::geodesic::Graph;
 use super::literal;
-use super::poses;
 use super::result::{Fitted, KeyPointError, KeyPoints, Replacement, Step};
 use super::stages;
 use super::surface::Surface;
@@ -119,7 +118,7 @@ pub async fn fit_all_by(
 
 fn prepared<'a>(sequence: &Sequence, surface: &'a Surface, parameters: &Parameters) -> Result<Full<'a>, KeyPointError> {
     let gammas = [parameters.gamma_rotation, parameters.gamma_shear];
-    let features = surface.features(&poses::spread(surface), gammas);
+    let features = surface.features(&surface.telling_poses(), gammas);
     Ok(Full::new(sequence, surface, features, parameters.fit())?)
 }
 

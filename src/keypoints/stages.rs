@@ -7,7 +7,6 @@
 
 use super::coarse::Coarse;
 use super::full::Full;
-use super::poses;
 use super::result::{KeyPointError, Replacement, Step};
 use super::search::{Search, Set, WORTH};
 use super::select::{Choice, is_enough, measured};
@@ -59,7 +58,7 @@ pub async fn run(
 ) -> Result<Choice, KeyPointError> {
     let surface = full.surface;
     let gammas = [parameters.gamma_rotation, parameters.gamma_shear];
-    let poses = poses::spread(surface);
+    let poses = surface.telling_poses();
     let coarse = Coarse::new(surface, found, &poses, COARSE[0], gammas);
     let mut steps = Vec::new();
     let mut trail = Trail { surface, replacements: Vec::new() };

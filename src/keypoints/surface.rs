@@ -4,6 +4,7 @@ use crate::mesh::ball::unit_ball;
 use crate::mesh::laplacian::Laplacian;
 use crate::mesh::pieces::pieces;
 use crate::mesh::weld::{compact, weld};
+use crate::poses::spread;
 use crate::sequence::Sequence;
 use glam::DVec3;
 
@@ -12,6 +13,12 @@ const WELD: f64 = 1e-7;
 
 /// Coordinates of poses beyond this (in unit-sphere radii) are taken as this, so that squares stay in range.
 const FAR: f64 = 1e60;
+
+/// Poses that take part in the search; all take part in the errors that are reported.
+const MOST_POSES: usize = 12;
+
+/// Vertices by which poses are compared.
+const COMPARED: usize = 500;
 
 /// A mesh and its poses, vertices that agree welded, lengths in unit-sphere radii.
 pub struct Surface {
@@ -77,6 +84,13 @@ impl Surface {
         used.dedup();
         let pieces = by_area(&faces, &reference);
         Self { faces, reference, poses, counts, origin, number, pieces, used, laplacian, ball }
+    }
+
+    /// A few poses that are far from the reference and from each other, in ascending order.
+    pub fn telling_poses(&self) -> Vec<usize> {
+        let step = self.used.len().div_ceil(COMPARED).max(1);
+        let compared: Vec<usize> = self.used.iter().step_by(step).map(|&v| v as usize).collect();
+        spread(&self.reference, &self.poses, &compared, MOST_POSES, f64::NEG_INFINITY)
     }
 }
 

@@ -1,11 +1,14 @@
 //! Bones by clustering of motions: vertices belong to the bone whose rigid motion explains their poses best.
 
 use crate::linalg::rigid_fit::{Moments, RigidMotion};
+use crate::poses::spread;
 use crate::transfer::surface::Surface;
 use glam::DVec3;
 
 /// Poses that are looked at, the most different ones.
 const POSES: usize = 16;
+/// Vertices by which poses are compared.
+const COMPARED: usize = 500;
 /// Vertices that take part in the clustering, evenly thinned.
 const SAMPLES: usize = 2500;
 /// Bones are added until motions explain the vertices to this root mean square, in radii.
@@ -30,25 +33,9 @@ pub struct Bones {
 
 /// Up to `POSES` poses that differ most from the reference and from each other, in ascending order.
 pub fn telling_poses(surface: &Surface, poses: &[Vec<DVec3>]) -> Vec<usize> {
-    if poses.len() <= POSES {
-        return (0..poses.len()).collect();
-    }
-    let step = surface.len().div_ceil(500).max(1);
-    let apart = |a: &[DVec3], b: &[DVec3]| -> f64 {
-        a.iter().step_by(step).zip(b.iter().step_by(step)).map(|(p, q)| p.distance_squared(*q)).sum()
-    };
-    let mut distance: Vec<f64> = poses.iter().map(|pose| apart(pose, &surface.positions)).collect();
-    let mut chosen = Vec::with_capacity(POSES);
-    while chosen.len() < POSES {
-        let next = (0..poses.len()).max_by(|&a, &b| distance[a].total_cmp(&distance[b]).then(b.cmp(&a)));
-        let Some(next) = next.filter(|&i| distance[i] > 0.0) else { break };
-        chosen.push(next);
-        for (d, pose) in distance.iter_mut().zip(poses) {
-            *d = d.min(apart(pose, &poses[next]));
-        }
-    }
-    chosen.sort_unstable();
-    chosen
+    let step = surface.len().div_ceil(COMPARED).max(1);
+    let compared: Vec<usize> = (0..surface.len()).step_by(step).collect();
+    spread(&surface.positions, poses, &compared, POSES, 0.0)
 }
 
 /// Finds bones; at least one for a surface with vertices.
