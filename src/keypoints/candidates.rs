@@ -3,8 +3,8 @@
 //! Yuval Eldar, Michael Lindenbaum, Moshe Porat, Yehoshua Y. Zeevi. The farthest point strategy for progressive image
 //! sampling. IEEE Transactions on Image Processing 6(9), 1997.
 
-use super::geodesic::Graph;
 use super::surface::Surface;
+use crate::mesh::paths::{Graph, Paths};
 use glam::DVec3;
 
 /// Times that the farthest vertex is sought, at most; three are usual.
@@ -22,7 +22,7 @@ const LIMBS: usize = 6;
 /// `count` by distance.
 pub fn candidates(surface: &Surface, graph: &Graph, count: usize, seed: u64) -> Vec<u32> {
     let pieces = &surface.pieces;
-    let mut distance = vec![f64::INFINITY; surface.reference.len()];
+    let mut paths = Paths::new(graph);
     let mut found = Vec::new();
     for (number, piece) in pieces.iter().take(count).enumerate() {
         let mut start = farthest_from_the_middle(piece, &surface.reference);
@@ -32,18 +32,18 @@ pub fn candidates(surface: &Surface, graph: &Graph, count: usize, seed: u64) -> 
             }
             start = end(surface, graph, start);
         }
-        graph.lower(&mut distance, start);
+        paths.add(graph, start, found.len() as u32);
         found.push(start);
     }
     let wanted = count.max((count / 2 + found.len()).min(count + count / 2));
     while found.len() < wanted {
         let farther = |best: Option<(f64, u32)>, &v: &u32| {
-            let d = distance[v as usize];
+            let d = paths.distance[v as usize];
             if d.is_finite() && best.is_none_or(|b| d > b.0) { Some((d, v)) } else { best }
         };
         match surface.used.iter().fold(None, farther) {
             Some((d, v)) if d > 0.0 => {
-                graph.lower(&mut distance, v);
+                paths.add(graph, v, found.len() as u32);
                 found.push(v);
             }
             _ => break,
@@ -59,17 +59,18 @@ pub fn candidates(surface: &Surface, graph: &Graph, count: usize, seed: u64) -> 
 fn end(surface: &Surface, graph: &Graph, from: u32) -> u32 {
     let mut longest = Way { ends: [from, from], length: 0.0 };
     for _ in 0..SWEEPS {
-        let next = Way::from(longest.ends[1], &ways(surface, graph, longest.ends[1]));
+        let next = Way::from(longest.ends[1], &Paths::from(graph, longest.ends[1]).distance);
         if next.length <= longest.length {
             break;
         }
         longest = next;
     }
-    let mut nearest = ways(surface, graph, longest.ends[0]);
-    graph.lower(&mut nearest, longest.ends[1]);
+    let mut nearest = Paths::from(graph, longest.ends[0]);
+    nearest.add(graph, longest.ends[1], 1);
+    let mut nearest = nearest.distance;
     for _ in 0..LIMBS {
         let limb = Way::from(from, &nearest).ends[1];
-        let distance = ways(surface, graph, limb);
+        let distance = Paths::from(graph, limb).distance;
         nearest.iter_mut().zip(&distance).for_each(|(nearest, &d)| *nearest = d.min(*nearest));
         let way = Way::from(limb, &distance);
         if way.length > longest.length {
@@ -95,13 +96,6 @@ impl Way {
         let (to, length) = reached.fold((from, 0.0), |best, (v, &d)| if d > best.1 { (v as u32, d) } else { best });
         Self { ends: [from, to], length }
     }
-}
-
-/// The lengths of the ways from a vertex to all.
-fn ways(surface: &Surface, graph: &Graph, from: u32) -> Vec<f64> {
-    let mut distance = vec![f64::INFINITY; surface.reference.len()];
-    graph.lower(&mut distance, from);
-    distance
 }
 
 fn farthest_from_the_middle(piece: &[u32], points: &[DVec3]) -> u32 {

@@ -2,7 +2,7 @@
 
 use super::candidates::candidates;
 use super::full::Full;
-use super::geodesic::Graph;
+use super::geodesic;
 use super::literal;
 use super::result::{Fitted, KeyPointError, KeyPoints, Replacement, Step};
 use super::stages;
@@ -51,7 +51,7 @@ pub async fn select_by(
         return Err(KeyPointError::NoFaces);
     }
     watch.begin("candidates", 0.02)?;
-    let graph = Graph::new(&surface.faces, &surface.reference);
+    let graph = geodesic::graph(&surface.faces, &surface.reference);
     let found = candidates(&surface, &graph, parameters.candidates, parameters.seed);
     let mut names: Vec<u32> = found.iter().map(|&c| surface.origin[c as usize]).collect();
     let mut warnings = Vec::new();

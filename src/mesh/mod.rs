@@ -10,6 +10,7 @@ pub mod groups;
 pub mod kd_tree;
 pub mod laplacian;
 pub mod near;
+pub mod paths;
 pub mod pieces;
 pub mod weld;
 

@@ -16,7 +16,6 @@ mod coarse;
 mod consensus;
 mod crowd;
 mod distances;
-mod paths;
 mod refine;
 mod similarity;
 mod stands;

@@ -1,6 +1,6 @@
 //! A surface's samples as a coarse mesh, and the graph along which distances between them run.
 
-use super::paths::Graph;
+use crate::mesh::paths::Graph;
 use glam::DVec3;
 
 /// Triangles between three cells that meet at a face, each once.

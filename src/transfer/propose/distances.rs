@@ -1,7 +1,7 @@
 //! Distances between all nodes of a graph, of which only those that are asked for are worked out: points that look for
 //! their places try about half of a surface's samples.
 
-use super::paths::{Graph, Paths};
+use crate::mesh::paths::{Graph, Paths};
 use std::sync::OnceLock;
 
 /// How far it is to what cannot be reached.
@@ -37,10 +37,8 @@ impl Distances {
     /// Distances of all nodes from one of them.
     pub fn row(&self, node: u32) -> &[f32] {
         self.rows[node as usize].get_or_init(|| {
-            let mut paths = Paths::new(&self.graph);
-            paths.add(&self.graph, node, 0);
             let far = |&d: &f64| self.unit * if d.is_finite() { d as f32 } else { BEYOND };
-            paths.distance.iter().map(far).collect()
+            Paths::from(&self.graph, node).distance.iter().map(far).collect()
         })
     }
 }

@@ -7,10 +7,10 @@
 
 use super::coarse;
 use super::distances::Distances;
-use super::paths::{Graph, Paths};
 use crate::mesh::doctor::outward;
 use crate::mesh::face::{self, nearest_in_triangle};
 use crate::mesh::kd_tree::KdTree;
+use crate::mesh::paths::{Graph, Paths};
 use crate::mesh::pieces::pieces;
 use crate::mesh::weld::weld;
 use glam::DVec3;

@@ -1,4 +1,4 @@
-//! Shortest paths over a weighted graph of points.
+//! Shortest paths over a graph whose links have lengths.
 
 /// A graph whose links have lengths: the neighbours of all nodes, one node after the other.
 #[derive(Clone, Debug, Default)]
@@ -35,6 +35,11 @@ impl Graph {
         self.start.len().saturating_sub(1)
     }
 
+    /// Whether there is no node.
+    pub fn is_empty(&self) -> bool {
+        self.len() == 0
+    }
+
     /// The neighbours of a node and how far they are.
     pub fn links(&self, node: u32) -> &[(u32, f64)] {
         &self.links[self.start[node as usize] as usize..self.start[node as usize + 1] as usize]
@@ -60,6 +65,13 @@ impl Paths {
     pub fn new(graph: &Graph) -> Self {
         let nodes = graph.len();
         Self { distance: vec![f64::INFINITY; nodes], label: vec![u32::MAX; nodes], buckets: Buckets::new(graph) }
+    }
+
+    /// From one source, whose label is 0.
+    pub fn from(graph: &Graph, source: u32) -> Self {
+        let mut paths = Self::new(graph);
+        paths.add(graph, source, 0);
+        paths
     }
 
     /// Adds a source; only what becomes nearer is visited. `graph` is the one that `self` was made for.
