@@ -4,12 +4,12 @@
  */
 import { OPENING } from './history.js';
 import { fresh, MOST_POINTS } from './keypoints.js';
+import { TARGET, writeRecipe } from './link-recipe.js';
 
 const PROPOSED = '~';
 const AWAY = '-';
 /** In place of `pairs`: the true places of all points that two creatures have in common. */
 const LANDMARKS = 'landmarks';
-const RECIPE = ['faces', 'poses', 'exact', 'motion', 'size', 'build', 'head', 'neck', 'legs', 'arms', 'tail'];
 
 /** Writes the state of key points, target and transfer into the fields of a link. */
 export function writePoints(app, fields, own = false) {
@@ -17,10 +17,7 @@ export function writePoints(app, fields, own = false) {
   for (const [name, value] of Object.entries(doc.search)) fields[`k.${name}`] = JSON.stringify(value);
   if (doc.method) fields.method = doc.method;
   const target = doc.target?.source;
-  if (target?.kind === 'zoo') {
-    fields.target = target.recipe.name;
-    for (const name of RECIPE) if (target.recipe[name] !== about.recipe[name]) fields[`target.${name}`] = target.recipe[name];
-  }
+  if (target?.kind === 'zoo') writeRecipe(fields, target.recipe, about.recipe, TARGET);
   // Vertex numbers mean nothing on another mesh than this.
   if (!doc.count || (source?.kind === 'files' && !own)) return;
   const used = doc.points.slice(0, doc.count);

@@ -3,6 +3,7 @@
  * default is written. Files of the visitor's own cannot travel in a link.
  */
 import { placesOf, writePoints } from './link-points.js';
+import { parse, writeRecipe } from './link-recipe.js';
 import { viewNow } from './stages.js';
 import { STEPS } from './steps/index.js';
 import { METHODS } from './steps/methods.js';
@@ -13,12 +14,6 @@ import { AXES } from './upright.js';
 const VERSION = 'v1';
 /** Browsers limit how often the address may be replaced, in milliseconds. */
 const WRITE_EVERY = 400;
-/** The hash holds the creature's recipe under these names. */
-const RECIPE = ['faces', 'poses', 'exact', 'motion', 'size', 'build', 'head', 'neck', 'legs', 'arms', 'tail'];
-
-/** Of these there are whole numbers, from one to another. */
-const COUNTS = { faces: [1_000, 1_000_000], poses: [1, 240] };
-const within = (value, [low, high]) => Math.round(Math.min(Math.max(value, low), high));
 
 /** What is named by fields of a link, in words. */
 const CALLED = { zoo: 'a creature', target: 'a target', step: 'a step', motion: 'a motion' };
@@ -43,10 +38,7 @@ function decode(text) {
 export function writeLink(app, timeline, { own = false } = {}) {
   const fields = {};
   const { source, about } = app;
-  if (source?.kind === 'zoo') {
-    fields.zoo = source.recipe.name;
-    for (const name of RECIPE) if (source.recipe[name] !== about.recipe[name]) fields[name] = source.recipe[name];
-  }
+  if (source?.kind === 'zoo') writeRecipe(fields, source.recipe, about.recipe);
   if (source?.kind === 'src' || (own && source?.kind === 'files')) {
     for (const [name, value] of Object.entries(source.options)) {
       if (JSON.stringify(value) !== JSON.stringify(about.options[name])) fields[`import.${name}`] = worded(value);
@@ -90,19 +82,6 @@ export function applyLink(fields, app) {
   app.views = {};
   for (const { id, views } of STEPS) if (views?.some((view) => view.id === fields.view)) app.views[id] = fields.view;
   app.changed('parameters', 'step', 'view', 'lessons');
-}
-
-/** The recipe of the creature that a link names; null if it names none that exists. */
-export function recipeOf(fields, { creatures, motions, recipe }, [key, prefix] = ['zoo', '']) {
-  if (!creatures.includes(fields[key])) return null;
-  const wanted = { name: fields[key] };
-  for (const name of RECIPE) {
-    const text = fields[prefix + name];
-    const value = typeof recipe[name] === 'string' ? text : parse(text);
-    if (typeof value === typeof recipe[name]) wanted[name] = COUNTS[name] ? within(value, COUNTS[name]) : value;
-  }
-  if (!motions[creatures.indexOf(wanted.name)].includes(wanted.motion)) delete wanted.motion;
-  return wanted;
 }
 
 /** What a link names that is not known here, as a sentence; null if there is nothing. */
@@ -150,14 +129,6 @@ export function tourOf({ tour = '' }) {
 
 /** A value that {@link parse} reads; a word stands without quotation marks, as people write it. */
 const worded = (value) => (/^-?[a-z]+$/i.test(value) && parse(value) === undefined ? value : JSON.stringify(value));
-
-function parse(text, otherwise = undefined) {
-  try {
-    return JSON.parse(text);
-  } catch {
-    return otherwise;
-  }
-}
 
 /** Keeps the address up to date. */
 export function followState(app, timeline) {

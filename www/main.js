@@ -11,7 +11,8 @@ import { chosen } from './files.js';
 import { handling } from './handling.js';
 import { keys } from './keys.js';
 import { goToPoints } from './link-points.js';
-import { applyLink, followState, optionsOf, placeOf, readLink, recipeOf, tourOf, unknownOf } from './link.js';
+import { recipeOf, TARGET } from './link-recipe.js';
+import { applyLink, followState, optionsOf, placeOf, readLink, tourOf, unknownOf } from './link.js';
 import { keepOffline } from './offline.js';
 import { notices } from './notice.js';
 import { overlay } from './overlay.js';
@@ -155,7 +156,7 @@ function enter(fields, open, own) {
   const place = placeOf(fields);
   applyLink(fields, app);
   app.setPanel(fields.panel !== 'away' && !NARROW.matches && !LOW.matches && !embedded);
-  const arrive = () => goTo(place, recipeOf(fields, app.about, ['target', 'target.']), own);
+  const arrive = () => goTo(place, recipeOf(fields, app.about, TARGET), own);
   app.addEventListener('source', arrive, { once: true });
   return open().finally(() => app.removeEventListener('source', arrive));
 }
