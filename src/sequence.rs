@@ -122,6 +122,19 @@ impl Sequence {
         Ok(self)
     }
 
+    /// The same mesh, with its polygons, in another reference pose and other poses.
+    pub fn reposed(&self, reference: Vec<DVec3>, poses: Vec<Pose>) -> Result<Self, SequenceError> {
+        let reposed = Self::new(self.name.clone(), self.faces.clone(), reference, poses)?;
+        Ok(Self { polygons: self.polygons.clone(), ..reposed })
+    }
+
+    /// The same mesh in poses of its own (#V positions each) that have the names and times of `leader`'s.
+    pub fn moving_like(&self, leader: &Self, positions: Vec<Vec<DVec3>>) -> Result<Self, SequenceError> {
+        let poses = leader.poses.iter().zip(positions);
+        let poses = poses.map(|(pose, positions)| Pose { name: pose.name.clone(), time: pose.time, positions });
+        self.reposed(self.reference.clone(), poses.collect())
+    }
+
     /// The reference pose without the others.
     pub fn reference_alone(&self) -> Self {
         Self { poses: Vec::new(), ..self.clone() }
@@ -214,6 +227,22 @@ fn check_finite(pose: &str, positions: &[DVec3]) -> Result<(), SequenceError> {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn what_moves_like_another_keeps_its_own_mesh() {
+        let square = [[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]].map(|[x, y]| DVec3::new(x, y, 0.0)).to_vec();
+        let faces = vec![[0, 1, 2], [0, 2, 3]];
+        let still =
+            Sequence::new("square", faces, square.clone(), Vec::new()).unwrap().with_polygons(vec![7, 7]).unwrap();
+        let pose = |name: &str, time| Pose { name: name.to_owned(), time, positions: vec![DVec3::ZERO; 3] };
+        let leader =
+            Sequence::new("leader", vec![[0, 1, 2]], vec![DVec3::ZERO; 3], vec![pose("a", 0.5), pose("b", 2.0)]);
+        let moved: Vec<DVec3> = square.iter().map(|p| *p + DVec3::Z).collect();
+        let moving = still.moving_like(&leader.unwrap(), vec![square, moved.clone()]).unwrap();
+        assert_eq!((moving.name(), moving.polygons()), ("square", Some(&[7, 7][..])));
+        assert_eq!(moving.reference(), still.reference());
+        assert_eq!(moving.poses()[1], Pose { name: "b".to_owned(), time: 2.0, positions: moved });
+    }
 
     #[test]
     fn the_diagonal_is_right_for_huge_and_tiny_meshes() {

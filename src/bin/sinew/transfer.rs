@@ -15,7 +15,7 @@ use sinew::export::animation::{Influences, Skin, SkinPose, exact, light};
 use sinew::import::{File, Imported, Up, may_be_needed, natural_order};
 use sinew::mesh::ball::unit_ball;
 use sinew::observer::Silent;
-use sinew::sequence::{Pose, Sequence};
+use sinew::sequence::Sequence;
 use sinew::transfer::{Method, Pair, Parameters, Transfer as Result_, transfer};
 use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
@@ -108,7 +108,7 @@ impl Transfer {
         let begun = clock::seconds();
         let positions = result.poses(target.sequence.reference());
         let blending = clock::seconds() - begun;
-        let moved = moved(&source.sequence, &target.sequence, positions)?;
+        let moved = target.sequence.moving_like(&source.sequence, positions)?;
         let errors = if self.truth.is_empty() { None } else { Some(self.measure(&target, &moved)?) };
         if let Some(folder) = &self.out_poses {
             write_poses(folder, &moved, target.up)?;
@@ -194,21 +194,6 @@ impl Transfer {
             ..default
         }
     }
-}
-
-/// The target with the poses of the source.
-fn moved(source: &Sequence, target: &Sequence, positions: Vec<Vec<DVec3>>) -> Result<Sequence, Refusal> {
-    let poses = source
-        .poses()
-        .iter()
-        .zip(positions)
-        .map(|(pose, positions)| Pose { name: pose.name.clone(), time: pose.time, positions })
-        .collect();
-    let moved = Sequence::new(target.name(), target.faces().to_vec(), target.reference().to_vec(), poses)?;
-    Ok(match target.polygons() {
-        Some(polygons) => moved.with_polygons(polygons.to_vec())?,
-        None => moved,
-    })
 }
 
 /// How far the result is from the truth, in radii of the target's unit ball.

@@ -1,7 +1,7 @@
 //! Messages about the target in motion.
 
 use super::Engine;
-use super::sequences::{look, moving, written};
+use super::sequences::{look, written};
 use super::values::{Reply, parsed, plain, put, read_pairs, sentence};
 use super::watcher;
 use crate::export::animation;
@@ -69,12 +69,13 @@ impl Engine {
         let look = look(files, options)?;
         let look = look.as_ref();
         if let ("exact", Some(poses)) = (form, &self.faces_moved) {
-            return written(&animation::exact(&moving(source, target, poses.clone())?, look), [0.0; 2], look);
+            let moving = target.moving_like(source, poses.clone()).map_err(sentence)?;
+            return written(&animation::exact(&moving, look), [0.0; 2], look);
         }
         let moved = self.moved.as_ref().ok_or_else(|| sentence("The target does not move yet."))?;
         match form {
             "exact" => {
-                let moving = moving(source, target, moved.poses(target.reference()))?;
+                let moving = target.moving_like(source, moved.poses(target.reference())).map_err(sentence)?;
                 written(&animation::exact(&moving, look), [0.0; 2], look)
             }
             "light" => {

@@ -39,12 +39,7 @@ pub fn rounded(sequence: &Sequence) -> Result<Sequence, JsValue> {
         .iter()
         .map(|pose| Pose { name: pose.name.clone(), time: pose.time, positions: round(&pose.positions) })
         .collect();
-    let result = Sequence::new(sequence.name(), sequence.faces().to_vec(), round(sequence.reference()), poses)
-        .map_err(sentence)?;
-    match sequence.polygons() {
-        Some(polygons) => result.with_polygons(polygons.to_vec()).map_err(sentence),
-        None => Ok(result),
-    }
+    sequence.reposed(round(sequence.reference()), poses).map_err(sentence)
 }
 
 /// A sequence for the page, and what its files say of it, if it comes from files.
@@ -124,18 +119,6 @@ pub fn kept_sequence(kept: JsValue) -> Result<Sequence, JsValue> {
         sequence = sequence.with_polygons(Uint32Array::from(polygons).to_vec()).map_err(sentence)?;
     }
     Ok(sequence)
-}
-
-/// The target in poses of its own, at the times of the source's.
-pub fn moving(source: &Sequence, target: &Sequence, poses: Vec<Vec<DVec3>>) -> Result<Sequence, JsValue> {
-    let poses = source
-        .poses()
-        .iter()
-        .zip(poses)
-        .map(|(pose, positions)| Pose { name: pose.name.clone(), time: pose.time, positions })
-        .collect();
-    Sequence::new(target.name().to_owned(), target.faces().to_vec(), target.reference().to_vec(), poses)
-        .map_err(sentence)
 }
 
 /// What the mesh in `files` looks like, if they say it and can be read; `options` as they were when it was opened.

@@ -2,7 +2,7 @@
 //!
 //! The curve of Yang, Gao, Lai, Rosin & Xia 2018, Fig. 14.
 
-use super::{BOUNDS, Errors, Transfer, moved};
+use super::{BOUNDS, Errors, Transfer};
 use crate::Refusal;
 use crate::output::{self, say};
 use glam::DVec3;
@@ -47,7 +47,7 @@ impl Transfer {
             let start = clock::seconds();
             let positions = positions(source, target, pairs, &parameters)?;
             let seconds = clock::seconds() - start;
-            let sequence = moved(&source.sequence, &target.sequence, positions)?;
+            let sequence = target.sequence.moving_like(&source.sequence, positions)?;
             rows.push(Row { name, errors: self.measure(target, &sequence)?, seconds });
         }
         output::write_report(path, &report(source, target, pairs, &rows))?;

@@ -1,6 +1,6 @@
 //! `--method gradients` and `--method posed`: what each face does is carried over.
 
-use super::{BOUNDS, Errors, Transfer, moved, write_poses};
+use super::{BOUNDS, Errors, Transfer, write_poses};
 use crate::Refusal;
 use crate::input::print_warnings;
 use crate::output::{self, counted, say};
@@ -24,7 +24,7 @@ impl Transfer {
         let mover = Mover::new(&source.sequence, &target.sequence, parameters, &mut Silent)?;
         let mut result = mover.transfer(pairs, &mut Silent)?;
         result.seconds.splice(0..0, mover.seconds().iter().copied());
-        let sequence = moved(&source.sequence, &target.sequence, std::mem::take(&mut result.poses))?;
+        let sequence = target.sequence.moving_like(&source.sequence, std::mem::take(&mut result.poses))?;
         let errors = if self.truth.is_empty() { None } else { Some(self.measure(target, &sequence)?) };
         if let Some(folder) = &self.out_poses {
             write_poses(folder, &sequence, target.up)?;
