@@ -4,7 +4,7 @@ use crate::Refusal;
 use crate::input::{Input, print_warnings};
 use crate::output::{self, counted, say};
 use clap::{Args, ValueEnum};
-use serde_json::{Map, Value, json};
+use serde_json::{Value, json};
 use sinew::clock;
 use sinew::import::Imported;
 use sinew::keypoints::{KeyPoints, Parameters, Stop, select};
@@ -92,12 +92,6 @@ impl KeyPointsCommand {
 fn report(imported: &Imported, parameters: &Parameters, result: &KeyPoints, reading: f64) -> Value {
     let sequence = &imported.sequence;
     let sizes = sequence.sizes();
-    let mut seconds = Map::new();
-    seconds.insert("import".into(), json!(reading));
-    for (step, time) in &result.seconds {
-        seconds.insert((*step).into(), json!(time));
-    }
-    seconds.insert("total".into(), json!(reading + result.seconds.iter().map(|(_, time)| time).sum::<f64>()));
     let warnings: Vec<_> = imported.warnings.iter().chain(&result.warnings).collect();
     json!({
         "name": sequence.name(),
@@ -106,7 +100,7 @@ fn report(imported: &Imported, parameters: &Parameters, result: &KeyPoints, read
         "faces": sizes.faces,
         "components": pieces(sequence.faces(), sizes.vertices).count,
         "poses": sizes.poses,
-        "seconds": seconds,
+        "seconds": output::seconds(reading, &result.seconds),
         "key_points": result.key_points,
         "errors": result.errors,
         "pose_errors": result.fits.iter().map(|fit| fit.error).collect::<Vec<_>>(),

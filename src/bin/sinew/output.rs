@@ -1,7 +1,7 @@
 //! Writing files.
 
 use crate::Refusal;
-use serde_json::Value;
+use serde_json::{Map, Value, json};
 use sinew::export::glb;
 use sinew::sequence::Sequence;
 use sinew::view::colour::srgb_to_linear;
@@ -28,6 +28,17 @@ pub fn counted(count: usize, one: &str) -> String {
 /// Writes a report as JSON.
 pub fn write_report(path: &Path, report: &Value) -> Result<(), Refusal> {
     write(path, format!("{report:#}\n"))
+}
+
+/// The seconds of reading, of each step, and of all, for a report.
+pub fn seconds(reading: f64, steps: &[(&'static str, f64)]) -> Value {
+    let mut seconds = Map::new();
+    seconds.insert("import".into(), json!(reading));
+    for (step, time) in steps {
+        seconds.insert((*step).into(), json!(time));
+    }
+    seconds.insert("total".into(), json!(reading + steps.iter().map(|(_, time)| time).sum::<f64>()));
+    seconds.into()
 }
 
 /// Writes a moving mesh painted by its parts in the colours of the page, `labels` being #F part numbers and `names` the

@@ -4,7 +4,7 @@ use crate::Refusal;
 use crate::input::{Input, print_warnings};
 use crate::output::{self, counted, say};
 use clap::{Args, ValueEnum};
-use serde_json::{Map, Value, json};
+use serde_json::{Value, json};
 use sinew::clock;
 use sinew::export::labels;
 use sinew::import::Imported;
@@ -113,12 +113,6 @@ impl Segment {
 fn report(imported: &Imported, parameters: &Parameters, result: &Segmentation, reading: f64) -> Value {
     let sequence = &imported.sequence;
     let sizes = sequence.sizes();
-    let mut seconds = Map::new();
-    seconds.insert("import".into(), json!(reading));
-    for (step, time) in &result.seconds {
-        seconds.insert((*step).into(), json!(time));
-    }
-    seconds.insert("total".into(), json!(reading + result.seconds.iter().map(|(_, time)| time).sum::<f64>()));
     let warnings: Vec<_> = imported.warnings.iter().chain(&result.warnings).collect();
     json!({
         "name": sequence.name(),
@@ -128,7 +122,7 @@ fn report(imported: &Imported, parameters: &Parameters, result: &Segmentation, r
         "input_faces": imported.input_faces,
         "components": pieces(sequence.faces(), sizes.vertices).count,
         "poses": sizes.poses,
-        "seconds": seconds,
+        "seconds": output::seconds(reading, &result.seconds),
         "parts": result.parts.len(),
         "part_list": result.parts,
         "rigid_residual": result.rigid_residual,

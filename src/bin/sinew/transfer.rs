@@ -9,7 +9,7 @@ use crate::lists;
 use crate::output::{self, counted, say};
 use clap::{Args, ValueEnum};
 use glam::DVec3;
-use serde_json::{Map, Value, json};
+use serde_json::{Value, json};
 use sinew::clock;
 use sinew::export::animation::{Influences, Skin, SkinPose, exact, light};
 use sinew::import::{File, Imported, Up, may_be_needed, natural_order};
@@ -208,6 +208,13 @@ impl Errors {
     fn json(&self) -> Value {
         json!({ "mean": self.mean, "of_poses": self.of_poses, "bounds": BOUNDS, "within": self.within })
     }
+
+    fn say(&self) {
+        say(format_args!("  mean distance from the truth {:.4} of the radius; share of vertices within", self.mean));
+        for (bound, within) in BOUNDS.iter().zip(&self.within) {
+            say(format_args!("  {bound:<7} {:>5.1} %", 100.0 * within));
+        }
+    }
 }
 
 /// The truth's files: the meshes of a folder in natural order, without its reference pose.
@@ -322,14 +329,7 @@ fn report(
     errors: Option<&Errors>,
     [reading, blending]: [f64; 2],
 ) -> Value {
-    let mut seconds = Map::new();
-    seconds.insert("import".into(), json!(reading));
-    for (step, time) in &result.seconds {
-        seconds.insert((*step).into(), json!(time));
-    }
-    seconds.insert("blending".into(), json!(blending));
-    let total = reading + blending + result.seconds.iter().map(|(_, time)| time).sum::<f64>();
-    seconds.insert("total".into(), json!(total));
+    let steps = [result.seconds.as_slice(), &[("blending", blending)]].concat();
     let warnings: Vec<_> = source.warnings.iter().chain(&target.warnings).chain(&result.warnings).collect();
     json!({
         "source": source.sequence.name(),
@@ -346,7 +346,7 @@ fn report(
         "source_error": result.source_error,
         "size": result.alignment.size,
         "turn": result.alignment.turn.to_cols_array_2d(),
-        "seconds": seconds,
+        "seconds": output::seconds(reading, &steps),
         "error": errors.map(Errors::json),
         "warnings": warnings,
     })
@@ -362,12 +362,7 @@ fn print(source: &Imported, target: &Imported, pairs: &[Pair], result: &Result_,
         counted(pairs.len(), "pair"),
         counted(result.skin.handles.len(), "handle"),
     ));
-    if let Some(errors) = errors {
-        say(format_args!("  mean distance from the truth {:.4} of the radius; share of vertices within", errors.mean));
-        for (bound, within) in BOUNDS.iter().zip(&errors.within) {
-            say(format_args!("  {bound:<7} {:>5.1} %", 100.0 * within));
-        }
-    }
+    errors.into_iter().for_each(Errors::say);
     print_warnings(&source.warnings);
     print_warnings(&target.warnings);
     print_warnings(&result.warnings);

@@ -1,10 +1,10 @@
 //! `--method gradients` and `--method posed`: what each face does is carried over.
 
-use super::{BOUNDS, Errors, Transfer, write_poses};
+use super::{Errors, Transfer, write_poses};
 use crate::Refusal;
 use crate::input::print_warnings;
 use crate::output::{self, counted, say};
-use serde_json::{Map, Value, json};
+use serde_json::{Value, json};
 use sinew::export::animation::exact;
 use sinew::import::Imported;
 use sinew::observer::Silent;
@@ -49,13 +49,6 @@ fn report(
     errors: Option<&Errors>,
     reading: f64,
 ) -> Value {
-    let mut seconds = Map::new();
-    seconds.insert("import".into(), json!(reading));
-    for (step, time) in &result.seconds {
-        seconds.insert((*step).into(), json!(time));
-    }
-    let total = reading + result.seconds.iter().map(|(_, time)| time).sum::<f64>();
-    seconds.insert("total".into(), json!(total));
     let warnings: Vec<_> = source.warnings.iter().chain(&target.warnings).chain(&result.warnings).collect();
     json!({
         "source": source.sequence.name(),
@@ -70,7 +63,7 @@ fn report(
         "parts": result.parts,
         "size": result.alignment.size,
         "turn": result.alignment.turn.to_cols_array_2d(),
-        "seconds": seconds,
+        "seconds": output::seconds(reading, &result.seconds),
         "error": errors.map(Errors::json),
         "warnings": warnings,
     })
@@ -93,12 +86,7 @@ fn print(source: &Imported, target: &Imported, pairs: &[Pair], result: &Moved, e
         quality.distance,
         100.0 * quality.flipped
     ));
-    if let Some(errors) = errors {
-        say(format_args!("  mean distance from the truth {:.4} of the radius; share of vertices within", errors.mean));
-        for (bound, within) in BOUNDS.iter().zip(&errors.within) {
-            say(format_args!("  {bound:<7} {:>5.1} %", 100.0 * within));
-        }
-    }
+    errors.into_iter().for_each(Errors::say);
     print_warnings(&source.warnings);
     print_warnings(&target.warnings);
     print_warnings(&result.warnings);
