@@ -16,7 +16,7 @@ use sinew::mesh::ball::unit_ball;
 use sinew::mesh::laplacian::Laplacian;
 use sinew::observer::Silent;
 use sinew::sequence::Sequence;
-use sinew::skinning::{Fitter, Rig, Rows};
+use sinew::skinning::{Fitter, Rows, SkinnedMesh};
 use sinew::zoo::{self, Recipe};
 use std::cell::RefCell;
 use std::path::Path;
@@ -66,13 +66,13 @@ fn by_criterion(criterion: &mut Criterion, horse: &Sequence, parameters: &Parame
     group.finish();
 }
 
-/// One pose of a prepared rig of 15 handles.
+/// One pose of a prepared mesh of 15 handles.
 fn a_pose(criterion: &mut Criterion, horse: &Sequence, parameters: &Parameters) {
     let points = run(horse, &Parameters { points: Some(15), ..parameters.clone() }).1.key_points;
     let fitted = fit_all(horse, &points, parameters).expect("a fit");
     let laplacian = Laplacian::new(horse.faces(), horse.reference());
     let rows = Rows::new(&fitted.weights.values, points.len());
-    let rig = Rig {
+    let mesh = SkinnedMesh {
         reference: horse.reference(),
         edges: &laplacian.edges,
         stiffness: &laplacian.cotangents,
@@ -82,8 +82,8 @@ fn a_pose(criterion: &mut Criterion, horse: &Sequence, parameters: &Parameters) 
         groups: &fitted.groups,
         ball: unit_ball(horse.faces(), horse.reference()),
     };
-    criterion.bench_function("prepare a rig of 15 handles", |b| b.iter(|| Fitter::new(&rig, &parameters.fit())));
-    let fitter = Fitter::new(&rig, &parameters.fit());
+    criterion.bench_function("prepare a rig of 15 handles", |b| b.iter(|| Fitter::new(&mesh, &parameters.fit())));
+    let fitter = Fitter::new(&mesh, &parameters.fit());
     let poses = horse.poses();
     let mut turn = 0;
     criterion.bench_function("fit a pose with 15 handles", |b| {

@@ -3,24 +3,24 @@
 //! Yuval Eldar, Michael Lindenbaum, Moshe Porat, Yehoshua Y. Zeevi. The farthest point strategy for progressive image
 //! sampling. IEEE Transactions on Image Processing 6(9), 1997.
 
-use super::surface::Surface;
+use super::welded::WeldedSequence;
 use crate::mesh::paths::{Graph, Paths};
 use glam::DVec3;
 
 /// Times that the farthest vertex is sought, at most; three are usual.
 const SWEEPS: usize = 6;
 
-/// Ends of limbs that are tried as ends of the longest way.
+/// Ends of limbs that are tried as ends of the longest path.
 const LIMBS: usize = 6;
 
 /// Candidates in the order in which they are found, as vertices of the surface.
 ///
-/// The first is an end of the longest way over the largest piece, as far as it is found ([`end`]) from the vertex farthest
+/// The first is an end of the longest path over the largest piece, as far as it is found ([`end`]) from the vertex farthest
 /// from the middle, or for `seed` other than 0 from any vertex: nearly every seed ends at the same place, and with the
 /// same candidates. Then every piece gets one, the largest first, and then whatever vertex is farthest along the surface.
 /// If pieces alone take more than half of `count`, more candidates are added, so that the largest still get half of
 /// `count` by distance.
-pub fn candidates(surface: &Surface, graph: &Graph, count: usize, seed: u64) -> Vec<u32> {
+pub fn candidates(surface: &WeldedSequence, graph: &Graph, count: usize, seed: u64) -> Vec<u32> {
     let pieces = &surface.pieces;
     let mut paths = Paths::new(graph);
     let mut found = Vec::new();
@@ -52,14 +52,14 @@ pub fn candidates(surface: &Surface, graph: &Graph, count: usize, seed: u64) -> 
     found
 }
 
-/// One end of the longest way that is found: the end that is farther from the middle of all.
+/// One end of the longest path that is found: the end that is farther from the middle of all.
 ///
-/// From a vertex to the farthest, again and again, leads to a way that cannot be made longer at one end. Of a body with
+/// From a vertex to the farthest, again and again, leads to a path that cannot be made longer at one end. Of a body with
 /// limbs there are several, nearly as long as each other; so vertices that are far from all ends so far are tried, too.
-fn end(surface: &Surface, graph: &Graph, from: u32) -> u32 {
-    let mut longest = Way { ends: [from, from], length: 0.0 };
+fn end(surface: &WeldedSequence, graph: &Graph, from: u32) -> u32 {
+    let mut longest = Path { ends: [from, from], length: 0.0 };
     for _ in 0..SWEEPS {
-        let next = Way::from(longest.ends[1], &Paths::from(graph, longest.ends[1]).distance);
+        let next = Path::from(longest.ends[1], &Paths::from(graph, longest.ends[1]).distance);
         if next.length <= longest.length {
             break;
         }
@@ -69,12 +69,12 @@ fn end(surface: &Surface, graph: &Graph, from: u32) -> u32 {
     nearest.add(graph, longest.ends[1], 1);
     let mut nearest = nearest.distance;
     for _ in 0..LIMBS {
-        let limb = Way::from(from, &nearest).ends[1];
+        let limb = Path::from(from, &nearest).ends[1];
         let distance = Paths::from(graph, limb).distance;
         nearest.iter_mut().zip(&distance).for_each(|(nearest, &d)| *nearest = d.min(*nearest));
-        let way = Way::from(limb, &distance);
-        if way.length > longest.length {
-            longest = way;
+        let path = Path::from(limb, &distance);
+        if path.length > longest.length {
+            longest = path;
         }
     }
     let middle = surface.reference.iter().sum::<DVec3>() / surface.reference.len().max(1) as f64;
@@ -83,14 +83,14 @@ fn end(surface: &Surface, graph: &Graph, from: u32) -> u32 {
     if far(b).total_cmp(&far(a)).then(a.cmp(&b)).is_gt() { b } else { a }
 }
 
-/// A way along the surface.
-struct Way {
+/// A path along the surface.
+struct Path {
     ends: [u32; 2],
     length: f64,
 }
 
-impl Way {
-    /// The way to the farthest vertex, given the ways' lengths to all.
+impl Path {
+    /// The path to the farthest vertex, given the paths' lengths to all.
     fn from(from: u32, distance: &[f64]) -> Self {
         let reached = distance.iter().enumerate().filter(|(_, d)| d.is_finite());
         let (to, length) = reached.fold((from, 0.0), |best, (v, &d)| if d > best.1 { (v as u32, d) } else { best });

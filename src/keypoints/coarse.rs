@@ -2,7 +2,7 @@
 
 use super::decimate::decimate;
 use super::field::{Energy, banded_order};
-use super::surface::Surface;
+use super::welded::WeldedSequence;
 use crate::skinning::{Placed, Ring, features};
 use glam::DVec3;
 
@@ -10,9 +10,9 @@ use glam::DVec3;
 const MOST_GRADIENTS: usize = 500_000;
 
 /// A coarse mesh, its candidates, and what trying a set needs again and again.
-pub struct Coarse {
+pub struct CoarseMesh {
     /// Its vertices are in a banded order; `origin` are vertices of the *fine* surface.
-    pub surface: Surface,
+    pub surface: WeldedSequence,
     /// The energy of its fields.
     pub energy: Energy,
     /// The candidates, in the order they were found.
@@ -25,10 +25,10 @@ pub struct Coarse {
     nearest: Vec<u32>,
 }
 
-impl Coarse {
+impl CoarseMesh {
     /// Thins a surface out to about `target` vertices, all candidates among them. `poses` are the poses that count,
     /// `gammas` those of Eq. 15.
-    pub fn new(fine: &Surface, candidates: &[u32], poses: &[usize], target: usize, gammas: [f64; 2]) -> Self {
+    pub fn new(fine: &WeldedSequence, candidates: &[u32], poses: &[usize], target: usize, gammas: [f64; 2]) -> Self {
         let mut keep = vec![false; fine.reference.len()];
         candidates.iter().for_each(|&c| keep[c as usize] = true);
         // Pieces without a candidate have no say.
@@ -52,7 +52,7 @@ impl Coarse {
         let reference = of(&fine.reference);
         let posed: Vec<Vec<DVec3>> = poses.iter().map(|&t| of(&fine.poses[t])).collect();
         let candidates = candidates.iter().map(|&c| number[c as usize]).collect();
-        let surface = Surface::assemble(faces, reference, posed, counts, kept, number, fine.ball);
+        let surface = WeldedSequence::assemble(faces, reference, posed, counts, kept, number, fine.ball);
         let mut piece = vec![u32::MAX; surface.reference.len()];
         for (p, vertices) in surface.pieces.iter().enumerate() {
             vertices.iter().for_each(|&v| piece[v as usize] = p as u32);
@@ -95,7 +95,7 @@ impl Coarse {
     }
 }
 
-impl Surface {
+impl WeldedSequence {
     /// Rotations and stretches of the vertices over some poses (Eq. 15); over fewer of them where that would be many
     /// numbers.
     pub fn features(&self, poses: &[usize], [gamma_rotation, gamma_shear]: [f64; 2]) -> Vec<f64> {
@@ -123,7 +123,7 @@ fn in_banded_order(faces: &[[u32; 3]]) -> Vec<u32> {
     banded_order(&links).into_iter().map(|i| kept[i as usize]).collect()
 }
 
-fn nearest_of_each_piece(surface: &Surface) -> Vec<u32> {
+fn nearest_of_each_piece(surface: &WeldedSequence) -> Vec<u32> {
     let mut nearest = Vec::with_capacity(surface.reference.len() * surface.pieces.len());
     for &p in &surface.reference {
         for piece in &surface.pieces {

@@ -21,7 +21,7 @@ const MUCH: usize = 2;
 const MOST_VALENCE: usize = 64;
 
 /// A coarse mesh.
-pub struct Coarse {
+pub struct Decimated {
     /// Triples of vertices of the *fine* mesh.
     pub faces: Vec<[u32; 3]>,
     /// For each vertex of the fine mesh, the vertex that it collapsed onto: itself if it stayed.
@@ -76,7 +76,7 @@ type Heap = BinaryHeap<Reverse<(u64, u32, u32, u32)>>;
 
 /// Collapses until about `target` vertices with faces are left. `keep` is #V: what must stay. Of faces between the same
 /// vertices, as in two-sided leaves, one is taken.
-pub fn decimate(faces: &[[u32; 3]], points: &[DVec3], keep: &[bool], target: usize) -> Coarse {
+pub fn decimate(faces: &[[u32; 3]], points: &[DVec3], keep: &[bool], target: usize) -> Decimated {
     let mut mesh = Mesh::new(faces, points);
     let mut onto: Vec<u32> = (0..points.len() as u32).collect();
     let left = mesh.around.iter().filter(|f| !f.is_empty()).count();
@@ -91,7 +91,7 @@ pub fn decimate(faces: &[[u32; 3]], points: &[DVec3], keep: &[bool], target: usi
         onto[v] = end;
     }
     let faces = mesh.faces.iter().zip(&mesh.alive).filter(|(_, alive)| **alive).map(|(face, _)| *face).collect();
-    Coarse { faces, onto }
+    Decimated { faces, onto }
 }
 
 impl<'a> Mesh<'a> {

@@ -1,17 +1,17 @@
 //! Sets of key points on the mesh itself: weights, groups, fits.
 
 use super::result::{Fitted, Rounds};
-use super::surface::Surface;
+use super::welded::WeldedSequence;
 use crate::crew::Crew;
 use crate::sequence::Sequence;
-use crate::skinning::{Fit, FitParameters, Fitter, Rig, Rows, clusters};
+use crate::skinning::{Fit, FitParameters, Fitter, Rows, SkinnedMesh, clusters};
 use crate::weights::{Biharmonic, Weights, WeightsError};
 use glam::{DAffine3, DVec3};
 
 /// A sequence, ready for any set of points.
 pub struct Full<'a> {
     /// The welded mesh.
-    pub surface: &'a Surface,
+    pub surface: &'a WeldedSequence,
     biharmonic: Biharmonic,
     /// #V rows of rotations and stretches.
     features: Vec<f64>,
@@ -22,7 +22,7 @@ impl<'a> Full<'a> {
     /// Prepares the weights of a sequence, whose welded form is `surface`.
     pub fn new(
         sequence: &Sequence,
-        surface: &'a Surface,
+        surface: &'a WeldedSequence,
         features: Vec<f64>,
         fit: FitParameters,
     ) -> Result<Self, WeightsError> {
@@ -54,7 +54,7 @@ impl<'a> Full<'a> {
     pub fn fitter(&self, weights: &Weights, groups: &[u32]) -> Fitter {
         let surface = self.surface;
         let rows = Rows::new(&self.welded(weights), weights.count());
-        let rig = Rig {
+        let mesh = SkinnedMesh {
             reference: &surface.reference,
             edges: &surface.laplacian.edges,
             stiffness: &surface.laplacian.cotangents,
@@ -64,7 +64,7 @@ impl<'a> Full<'a> {
             groups,
             ball: (DVec3::ZERO, 1.0),
         };
-        Fitter::new(&rig, &self.fit)
+        Fitter::new(&mesh, &self.fit)
     }
 
     /// The mean error over all poses.

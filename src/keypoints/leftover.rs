@@ -1,6 +1,6 @@
 //! What a set of points leaves of the poses, and how much of it one more point would take.
 
-use super::coarse::Coarse;
+use super::coarse::CoarseMesh;
 use super::field::{Field, NOTHING};
 use crate::skinning::Rows;
 use crate::skinning::factor::Factor;
@@ -8,7 +8,7 @@ use glam::DVec3;
 
 /// What a set leaves of the poses when it is fitted by least squares alone.
 pub struct Leftover<'a> {
-    coarse: &'a Coarse,
+    coarse: &'a CoarseMesh,
     at: Vec<DVec3>,
     rows: Rows,
     factor: Factor,
@@ -19,7 +19,7 @@ pub struct Leftover<'a> {
 
 impl<'a> Leftover<'a> {
     /// Fits the set of `handles` (vertices of the coarse mesh) with `weights`, #V × #H row-major.
-    pub fn new(coarse: &'a Coarse, handles: &[u32], weights: &[f64], hold: f64) -> Self {
+    pub fn new(coarse: &'a CoarseMesh, handles: &[u32], weights: &[f64], hold: f64) -> Self {
         let surface = &coarse.surface;
         let at: Vec<DVec3> = handles.iter().map(|&v| surface.reference[v as usize]).collect();
         let rows = Rows::new(weights, handles.len());

@@ -26,8 +26,8 @@ mod result;
 mod search;
 mod select;
 mod stages;
-mod surface;
 mod thin;
+mod welded;
 
 pub use parameters::{Parameters, Stop};
 pub use result::{Fitted, KeyPointError, KeyPoints, Replacement, Rounds, Step, Tried};

@@ -12,12 +12,12 @@
 //! Taking a point away works the same way round: a field rises by as much of the field of that point as balances the
 //! force that held it down there.
 
-use super::coarse::Coarse;
+use super::coarse::CoarseMesh;
 use super::field::{Field, NOTHING, Scratch};
 use super::leftover::Leftover;
 use super::result::Tried;
 use crate::crew::Crew;
-use crate::skinning::{FitParameters, Fitter, Rig, Rows, clusters};
+use crate::skinning::{FitParameters, Fitter, Rows, SkinnedMesh, clusters};
 use glam::DVec3;
 use serde::{Deserialize, Serialize};
 
@@ -61,7 +61,7 @@ type Probed<'f> = (u32, &'f Field);
 
 /// The search at one moment.
 pub struct Search<'a> {
-    coarse: &'a Coarse,
+    coarse: &'a CoarseMesh,
     fit: FitParameters,
     /// The set so far.
     pub set: Set,
@@ -71,7 +71,7 @@ pub struct Search<'a> {
 
 impl<'a> Search<'a> {
     /// Starts from the first candidate (§3.5), which matters little, as it will be replaced.
-    pub async fn new(crew: &impl Crew, coarse: &'a Coarse, fit: FitParameters) -> Self {
+    pub async fn new(crew: &impl Crew, coarse: &'a CoarseMesh, fit: FitParameters) -> Self {
         let mut search = Self::from_points(coarse, fit, coarse.candidates.get(..1).unwrap_or_default());
         search.probe(crew).await;
         search
@@ -79,7 +79,7 @@ impl<'a> Search<'a> {
 
     /// Starts from points (vertices of the coarse mesh). They can be moved and put in order, and after
     /// [`Search::probe`] replaced.
-    pub fn from_points(coarse: &'a Coarse, fit: FitParameters, points: &[u32]) -> Self {
+    pub fn from_points(coarse: &'a CoarseMesh, fit: FitParameters, points: &[u32]) -> Self {
         let fit = FitParameters { rounds: 6, tolerance: 1e-3, ..fit };
         let mut search = Self { coarse, fit, set: Set::default(), probes: Vec::new() };
         if points.is_empty() {
@@ -324,7 +324,7 @@ impl<'a> Search<'a> {
     fn error(&self, set: &Set) -> f64 {
         let surface = &self.coarse.surface;
         let rows = Rows::new(&self.weights(set), set.members.len());
-        let rig = Rig {
+        let mesh = SkinnedMesh {
             reference: &surface.reference,
             edges: &surface.laplacian.edges,
             stiffness: &surface.laplacian.cotangents,
@@ -334,7 +334,7 @@ impl<'a> Search<'a> {
             groups: &set.groups,
             ball: (DVec3::ZERO, 1.0),
         };
-        let fitter = Fitter::new(&rig, &self.fit);
+        let fitter = Fitter::new(&mesh, &self.fit);
         let sum: f64 = self.coarse.placed.iter().map(|placed| fitter.fit_error(placed)).sum();
         sum / surface.poses.len().max(1) as f64
     }

@@ -6,7 +6,7 @@ use super::geodesic;
 use super::literal;
 use super::result::{Fitted, KeyPointError, KeyPoints, Replacement, Step};
 use super::stages;
-use super::surface::Surface;
+use super::welded::WeldedSequence;
 use super::{Parameters, Stop};
 use crate::crew::{Crew, Threads, at_once};
 use crate::observer::Observer;
@@ -46,7 +46,7 @@ pub async fn select_by(
     parameters.check()?;
     let mut watch = Stopwatch::new(observer);
     watch.begin("welding", 0.0)?;
-    let surface = Surface::new(sequence);
+    let surface = WeldedSequence::new(sequence);
     if surface.faces.is_empty() {
         return Err(KeyPointError::NoFaces);
     }
@@ -110,13 +110,17 @@ pub async fn fit_all_by(
     parameters: &Parameters,
 ) -> Result<Fitted, KeyPointError> {
     parameters.check()?;
-    let surface = Surface::new(sequence);
+    let surface = WeldedSequence::new(sequence);
     let full = prepared(sequence, &surface, parameters)?;
     let weights = full.weights(crew, points, None).await?;
     Ok(full.fitted(weights))
 }
 
-fn prepared<'a>(sequence: &Sequence, surface: &'a Surface, parameters: &Parameters) -> Result<Full<'a>, KeyPointError> {
+fn prepared<'a>(
+    sequence: &Sequence,
+    surface: &'a WeldedSequence,
+    parameters: &Parameters,
+) -> Result<Full<'a>, KeyPointError> {
     let gammas = [parameters.gamma_rotation, parameters.gamma_shear];
     let features = surface.features(&surface.telling_poses(), gammas);
     Ok(Full::new(sequence, surface, features, parameters.fit())?)

@@ -5,12 +5,12 @@
 //! wanted and then fewer again (P. Pudil, J. Novovičová, J. Kittler. *Floating search methods in feature selection*.
 //! Pattern Recognition Letters 15(11), 1994), and steps to vertices that are not among the candidates, make up for it.
 
-use super::coarse::Coarse;
+use super::coarse::CoarseMesh;
 use super::full::Full;
 use super::result::{KeyPointError, Replacement, Step};
 use super::search::{Search, Set, WORTH};
 use super::select::{Choice, is_enough, measured};
-use super::surface::Surface;
+use super::welded::WeldedSequence;
 use super::{Parameters, Stop};
 use crate::crew::Crew;
 use crate::stopwatch::Stopwatch;
@@ -32,17 +32,17 @@ const MANY: f64 = 12.0;
 
 /// Points replaced so far, by their vertices in the sequence.
 struct Trail<'a> {
-    surface: &'a Surface,
+    surface: &'a WeldedSequence,
     replacements: Vec<Replacement>,
 }
 
 impl Trail<'_> {
     /// The vertex of the sequence that a vertex of a coarse mesh is.
-    fn name(&self, coarse: &Coarse, vertex: u32) -> u32 {
+    fn name(&self, coarse: &CoarseMesh, vertex: u32) -> u32 {
         self.surface.origin[coarse.surface.origin[vertex as usize] as usize]
     }
 
-    fn add(&mut self, coarse: &Coarse, from: u32, to: u32, error: f64) {
+    fn add(&mut self, coarse: &CoarseMesh, from: u32, to: u32, error: f64) {
         let (from, to) = (self.name(coarse, from), self.name(coarse, to));
         self.replacements.push(Replacement { from, to, error });
     }
@@ -59,7 +59,7 @@ pub async fn run(
     let surface = full.surface;
     let gammas = [parameters.gamma_rotation, parameters.gamma_shear];
     let poses = surface.telling_poses();
-    let coarse = Coarse::new(surface, found, &poses, COARSE[0], gammas);
+    let coarse = CoarseMesh::new(surface, found, &poses, COARSE[0], gammas);
     let mut steps = Vec::new();
     let mut trail = Trail { surface, replacements: Vec::new() };
     watch.begin("adding points", 0.1)?;
@@ -85,7 +85,7 @@ pub async fn run(
         let mut kept: Vec<u32> = search.set.members.iter().map(|&m| coarse.surface.origin[m as usize]).collect();
         let others: Vec<u32> = found.iter().copied().filter(|v| !kept.contains(v)).take(AGAIN).collect();
         kept.extend(others);
-        let finer = Coarse::new(surface, &kept, &poses, COARSE[1], gammas);
+        let finer = CoarseMesh::new(surface, &kept, &poses, COARSE[1], gammas);
         let mut last = Search::from_points(&finer, parameters.fit(), &finer.candidates[..count]);
         settle(crew, &mut last, &finer, &mut trail, watch).await?;
         watch.begin("ordering points", 0.75)?;
@@ -109,7 +109,7 @@ pub async fn run(
 async fn settle<'a>(
     crew: &impl Crew,
     search: &mut Search<'a>,
-    finer: &'a Coarse,
+    finer: &'a CoarseMesh,
     trail: &mut Trail<'_>,
     watch: &mut Stopwatch<'_>,
 ) -> Result<(), KeyPointError> {
@@ -134,7 +134,7 @@ async fn exchange(
     crew: &impl Crew,
     search: &mut Search<'_>,
     [from, to]: [f64; 2],
-    coarse: &Coarse,
+    coarse: &CoarseMesh,
     trail: &mut Trail<'_>,
     watch: &mut Stopwatch<'_>,
 ) -> Result<(), KeyPointError> {
@@ -170,7 +170,7 @@ async fn in_turn<'a>(
     search: &mut Search<'a>,
     attempt: fn(&Search<'a>, usize) -> Option<Set>,
     [from, to]: [f64; 2],
-    coarse: &Coarse,
+    coarse: &CoarseMesh,
     trail: &mut Trail<'_>,
     watch: &mut Stopwatch<'_>,
 ) -> Result<(), KeyPointError> {

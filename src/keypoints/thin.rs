@@ -1,13 +1,13 @@
 //! A sequence on fewer vertices.
 
 use super::decimate::decimate;
-use super::surface::Surface;
+use super::welded::WeldedSequence;
 use crate::sequence::{Pose, Sequence};
 use glam::DVec3;
 
 /// The sequence on about `vertices` of its vertices, welded; vertices without a face are left out.
 pub fn thinned(sequence: &Sequence, vertices: usize) -> Sequence {
-    let surface = Surface::new(sequence);
+    let surface = WeldedSequence::new(sequence);
     let keep = vec![false; surface.reference.len()];
     let thin = decimate(&surface.faces, &surface.reference, &keep, vertices);
     let mut kept: Vec<u32> = thin.faces.iter().flatten().copied().collect();

@@ -1,6 +1,6 @@
 //! The sums over vertices and edges that a fit needs: A, and K and P of every group.
 
-use super::fitter::Rig;
+use super::fitter::SkinnedMesh;
 use super::functions::{Axes, Functions, as_rows};
 use crate::linalg::outer::outer;
 use glam::{DMat3, DVec3};
@@ -29,10 +29,10 @@ struct Links {
 }
 
 impl Links {
-    fn new(rig: &Rig, lambda: f64) -> Self {
-        let weighted = rig.edges.iter().zip(rig.stiffness).map(|(&edge, &stiffness)| (edge, lambda * stiffness));
+    fn new(mesh: &SkinnedMesh, lambda: f64) -> Self {
+        let weighted = mesh.edges.iter().zip(mesh.stiffness).map(|(&edge, &stiffness)| (edge, lambda * stiffness));
         let counted = weighted.filter(|&(_, weight)| weight > 0.0 && weight.is_finite());
-        let mut start = vec![0; rig.reference.len() + 1];
+        let mut start = vec![0; mesh.reference.len() + 1];
         counted.clone().flat_map(|(edge, _)| edge).for_each(|v| start[v as usize + 1] += 1);
         (1..start.len()).for_each(|v| start[v] += start[v - 1]);
         let mut next = start.clone();
@@ -83,21 +83,28 @@ impl Row {
 }
 
 impl Assembly {
-    /// Sums up. `points` (#V) and `mass` (#V) are those of the rig in the unit sphere, `hold` (#H) weighs the crosses.
-    pub fn new(rig: &Rig, functions: &Functions, points: &[DVec3], mass: &[f64], hold: &[f64], lambda: f64) -> Self {
-        let links = Links::new(rig, lambda);
+    /// Sums up. `points` (#V) and `mass` (#V) are those of the mesh in the unit sphere, `hold` (#H) weighs the crosses.
+    pub fn new(
+        mesh: &SkinnedMesh,
+        functions: &Functions,
+        points: &[DVec3],
+        mass: &[f64],
+        hold: &[f64],
+        lambda: f64,
+    ) -> Self {
+        let links = Links::new(mesh, lambda);
         let a = square(functions, &links, mass, hold.len());
-        let groups = groups(rig, functions, &links, points, hold.len());
+        let groups = groups(mesh, functions, &links, points, hold.len());
         let mut assembly = Self { a, groups };
-        assembly.add_crosses(rig, hold);
+        assembly.add_crosses(mesh, hold);
         assembly
     }
 
     /// The handles' crosses.
-    fn add_crosses(&mut self, rig: &Rig, hold: &[f64]) {
+    fn add_crosses(&mut self, mesh: &SkinnedMesh, hold: &[f64]) {
         let n = 4 * hold.len();
-        for (k, (&v, &hold)) in rig.handles.iter().zip(hold).enumerate() {
-            let group = &mut self.groups[rig.groups[v as usize] as usize];
+        for (k, (&v, &hold)) in mesh.handles.iter().zip(hold).enumerate() {
+            let group = &mut self.groups[mesh.groups[v as usize] as usize];
             group.p += DMat3::from_diagonal(DVec3::splat(hold));
             for axis in 0..3 {
                 group.k[4 * k + axis][axis] += hold;
@@ -129,20 +136,20 @@ fn square(functions: &Functions, links: &Links, mass: &[f64], handles: usize) ->
 }
 
 /// K and P of every group; an edge counts half in the group of each of its ends.
-fn groups(rig: &Rig, functions: &Functions, links: &Links, points: &[DVec3], handles: usize) -> Vec<Group> {
-    let count = rig.groups.iter().max().map_or(1, |&g| g as usize + 1);
+fn groups(mesh: &SkinnedMesh, functions: &Functions, links: &Links, points: &[DVec3], handles: usize) -> Vec<Group> {
+    let count = mesh.groups.iter().max().map_or(1, |&g| g as usize + 1);
     let mut k = vec![vec![Axes::default(); handles]; count];
     let mut p = vec![DMat3::ZERO; count];
     // What a vertex' edges add up to in the groups of its neighbours: mostly in its own alone.
     let mut shares: Vec<(u32, DVec3)> = Vec::new();
-    for (v, (&group, &here)) in rig.groups.iter().zip(points).enumerate() {
+    for (v, (&group, &here)) in mesh.groups.iter().zip(points).enumerate() {
         let mut own = DVec3::ZERO;
         for &(u, weight) in links.of(v) {
             let edge = here - points[u as usize];
             let half = 0.5 * weight * edge;
             p[group as usize] += outer(edge, half);
             own += half;
-            add_share(&mut shares, rig.groups[u as usize], half);
+            add_share(&mut shares, mesh.groups[u as usize], half);
         }
         add_share(&mut shares, group, own);
         shares.drain(..).for_each(|(group, share)| functions.spread(v, share, &mut k[group as usize]));

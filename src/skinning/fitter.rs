@@ -55,7 +55,7 @@ pub const LIKE_VERTICES: f64 = 2500.0;
 
 /// A mesh with handles, weights and groups.
 #[derive(Clone, Copy, Debug)]
-pub struct Rig<'a> {
+pub struct SkinnedMesh<'a> {
     /// #V points.
     pub reference: &'a [DVec3],
     /// Edges as pairs of vertices.
@@ -85,7 +85,7 @@ pub struct Fit {
     pub error: f64,
 }
 
-/// A rig, ready to follow any pose.
+/// A skinned mesh, ready to follow any pose.
 pub struct Fitter {
     parameters: FitParameters,
     centre: DVec3,
@@ -152,22 +152,22 @@ struct Target {
 }
 
 impl Fitter {
-    /// Prepares a rig: everything that does not depend on the pose.
-    pub fn new(rig: &Rig, parameters: &FitParameters) -> Self {
-        let (centre, radius) = (rig.ball.0, if rig.ball.1 > 0.0 { rig.ball.1 } else { 1.0 });
-        let points: Vec<DVec3> = rig.reference.iter().map(|&p| (p - centre) / radius).collect();
-        let sum: f64 = rig.mass.iter().sum();
+    /// Prepares a skinned mesh: everything that does not depend on the pose.
+    pub fn new(mesh: &SkinnedMesh, parameters: &FitParameters) -> Self {
+        let (centre, radius) = (mesh.ball.0, if mesh.ball.1 > 0.0 { mesh.ball.1 } else { 1.0 });
+        let points: Vec<DVec3> = mesh.reference.iter().map(|&p| (p - centre) / radius).collect();
+        let sum: f64 = mesh.mass.iter().sum();
         let scale = if sum > 0.0 { LIKE_VERTICES / sum } else { 0.0 };
-        let mass: Vec<f64> = rig.mass.iter().map(|m| m * scale).collect();
-        let at: Vec<DVec3> = rig.handles.iter().map(|&v| points[v as usize]).collect();
+        let mass: Vec<f64> = mesh.mass.iter().map(|m| m * scale).collect();
+        let at: Vec<DVec3> = mesh.handles.iter().map(|&v| points[v as usize]).collect();
         let mut hold = vec![0.0; at.len()];
         for (v, m) in mass.iter().enumerate() {
-            rig.weights.entries(v).for_each(|(k, w)| hold[k as usize] += parameters.hold * m * w);
+            mesh.weights.entries(v).for_each(|(k, w)| hold[k as usize] += parameters.hold * m * w);
         }
         let floor = parameters.hold * LIKE_VERTICES * 1e-6;
         hold.iter_mut().for_each(|h| *h = h.max(floor));
-        let functions = Functions::new(rig.weights, &points, &at);
-        let Assembly { a, groups } = Assembly::new(rig, &functions, &points, &mass, &hold, parameters.lambda);
+        let functions = Functions::new(mesh.weights, &points, &at);
+        let Assembly { a, groups } = Assembly::new(mesh, &functions, &points, &mass, &hold, parameters.lambda);
         let factor = Factor::new(a, 4 * at.len());
         let answer = |group: &Group| {
             let mut y = group.k.clone();
@@ -176,7 +176,7 @@ impl Fitter {
         };
         let answers: Vec<_> = groups.iter().map(answer).collect();
         let coupling = coupling(&groups, &answers);
-        let handles = rig.handles.to_vec();
+        let handles = mesh.handles.to_vec();
         let total = mass.iter().sum();
         Self {
             parameters: *parameters,
@@ -196,7 +196,7 @@ impl Fitter {
         }
     }
 
-    /// The maps that make the rig follow `pose` (#V points, in the reference's order).
+    /// The maps that make the mesh follow `pose` (#V points, in the reference's order).
     pub fn fit(&self, pose: &[DVec3]) -> Fit {
         self.finish(&self.placed(pose), |_| ())
     }

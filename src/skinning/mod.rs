@@ -25,7 +25,7 @@ mod gradients;
 mod rows;
 
 pub use clusters::clusters;
-pub use fitter::{Fit, FitParameters, Fitter, Placed, Rig};
+pub use fitter::{Fit, FitParameters, Fitter, Placed, SkinnedMesh};
 pub use gradients::{Ring, features};
 pub use rows::Rows;
 

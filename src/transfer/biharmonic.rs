@@ -7,7 +7,7 @@ use super::Method;
 use super::alignment::Alignment;
 use super::surface::Surface;
 use crate::mesh::laplacian::Laplacian;
-use crate::skinning::{FitParameters, Fitter, Rig, Ring, Rows, clusters, features};
+use crate::skinning::{FitParameters, Fitter, Ring, Rows, SkinnedMesh, clusters, features};
 use glam::{DAffine3, DVec3};
 
 /// γ_logr and γ_s of Eq. 15, the shares of rotations and of stretches in the groups.
@@ -27,7 +27,7 @@ pub fn fitter(surface: &Surface, points: &[u32], weights: &[f64], poses: &[Vec<D
     let [turn, shear] = GAMMAS;
     let features = features(&ring, &seen, turn, shear);
     let groups = clusters(weights, &features, points, &surface.mass);
-    let rig = Rig {
+    let mesh = SkinnedMesh {
         reference: &surface.positions,
         edges: &edges,
         stiffness: &stiffness,
@@ -37,7 +37,7 @@ pub fn fitter(surface: &Surface, points: &[u32], weights: &[f64], poses: &[Vec<D
         groups: &groups,
         ball: (DVec3::ZERO, 1.0),
     };
-    Fitter::new(&rig, &FitParameters::default())
+    Fitter::new(&mesh, &FitParameters::default())
 }
 
 /// The motion of a key point on the target, of its motion on the source; `pair` are the two points, all in unit balls.

@@ -21,7 +21,7 @@ const MOST_POSES: usize = 12;
 const COMPARED: usize = 500;
 
 /// A mesh and its poses, vertices that agree welded, lengths in unit-sphere radii.
-pub struct Surface {
+pub struct WeldedSequence {
     /// Triples of vertices; faces that name a vertex twice are left out.
     pub faces: Vec<[u32; 3]>,
     /// #V points.
@@ -44,7 +44,7 @@ pub struct Surface {
     pub ball: (DVec3, f64),
 }
 
-impl Surface {
+impl WeldedSequence {
     /// Welds and scales a sequence.
     pub fn new(sequence: &Sequence) -> Self {
         let faces = sequence.acting_faces();
