@@ -12,7 +12,7 @@ use sinew::observer::Silent;
 use sinew::sequence::{Pose, Sequence};
 use sinew::transfer::gradients::solver::{Solver, bridging};
 use sinew::transfer::gradients::{Moved, Mover};
-use sinew::transfer::surface::Surface;
+use sinew::transfer::surface::WeldedSurface;
 use sinew::transfer::{Method, Pair, Parameters, TransferError};
 use sinew::zoo::{self, Creature, Recipe};
 
@@ -137,7 +137,7 @@ fn creases(faces: &[[u32; 3]], found: &[DVec3], truth: &[DVec3]) -> f64 {
 }
 
 /// A target of two tetrahedra that do not touch, one with a face split into a flat one, and an edge with three faces.
-fn odd_target() -> Surface {
+fn odd_target() -> WeldedSurface {
     let tetrahedron = |at: DVec3| [at, at + 0.4 * DVec3::X, at + 0.5 * DVec3::Y, at + 0.3 * DVec3::Z];
     let mut positions = tetrahedron(DVec3::splat(-0.5)).to_vec();
     positions.extend(tetrahedron(DVec3::splat(0.2)));
@@ -148,7 +148,7 @@ fn odd_target() -> Surface {
     let mut faces = one.to_vec();
     faces.extend(one.map(|f| f.map(|v| v + 4)));
     faces.extend([[0, 8, 1], [4, 5, 9]]);
-    Surface::new(&Sequence::new("odd", faces, positions, Vec::new()).expect("a mesh"))
+    WeldedSurface::new(&Sequence::new("odd", faces, positions, Vec::new()).expect("a mesh"))
 }
 
 /// Maps that differ from face to face.
@@ -219,7 +219,7 @@ fn the_solution_is_that_of_a_dense_solve() {
     }
 }
 
-fn area(surface: &Surface, face: usize) -> f64 {
+fn area(surface: &WeldedSurface, face: usize) -> f64 {
     let [a, b, c] = surface.faces[face].map(|v| surface.positions[v as usize]);
     0.5 * (b - a).cross(c - a).length()
 }

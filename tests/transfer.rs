@@ -15,7 +15,7 @@ use sinew::sequence::{Pose, Sequence};
 use sinew::transfer::correspondence::Fitting;
 use sinew::transfer::gradients::Mover;
 use sinew::transfer::rig::Rig;
-use sinew::transfer::surface::Surface;
+use sinew::transfer::surface::WeldedSurface;
 use sinew::transfer::{Method, Pair, Parameters, Prepared, Transfer, TransferError, transfer};
 use sinew::zoo::{self, Creature, Recipe};
 use std::collections::BTreeMap;
@@ -97,7 +97,7 @@ fn a_body_in_pieces_moves_as_one() {
         let faces = whole.sequence.faces().iter().copied().filter(within).collect();
         let target =
             Sequence::new("in pieces", faces, whole.sequence.reference().to_vec(), Vec::new()).expect("a mesh");
-        let count = Surface::new(&target).pieces().len();
+        let count = WeldedSurface::new(&target).pieces().len();
         let pairs: Vec<Pair> =
             far_apart(target.reference(), 8).into_iter().map(|v| Pair { source: v, target: v }).collect();
         let result = by_default(&whole.sequence, &target, &pairs);
@@ -440,7 +440,7 @@ fn bones_of_few_vertices_do_not_spin() {
         let nearly =
             |(i, p): (usize, &DVec3)| *p + 1e-7 * source.diagonal() * DVec3::splat(((i * 7919) % 13) as f64 - 6.0);
         poses.push(Pose { positions: poses[0].positions.iter().enumerate().map(nearly).collect(), ..poses[0].clone() });
-        let surface = Surface::new(&source);
+        let surface = WeldedSurface::new(&source);
         let places: Vec<Vec<DVec3>> = poses.iter().map(|pose| surface.unit(&pose.positions)).collect();
         let rig = Rig::new(&surface, &places, 64);
         let apart = |(a, b): (&DAffine3, &DAffine3)| frobenius(a.matrix3 - b.matrix3);

@@ -7,9 +7,9 @@
 
 use super::alignment::Alignment;
 use super::propose::{Proposer, guides};
-use super::registration::{Effort, Ground, Known, LOST, Pin, Registration, feet};
+use super::registration::{ClosestPoints, Effort, Known, LOST, Pin, Registration, closest_points};
 use super::spline::Spline;
-use super::surface::{Foot, Surface};
+use super::surface::{SurfacePoint, WeldedSurface};
 use super::{Pair, TransferError};
 use glam::DVec3;
 use std::sync::Arc;
@@ -27,7 +27,7 @@ const BETTER: f64 = 0.8;
 
 /// What is needed to bend one target onto one source, and the last result.
 pub struct Bending {
-    ground: Ground,
+    closest: ClosestPoints,
     registration: Registration,
     /// Who gives guides, if anybody does.
     proposer: Option<Arc<Proposer>>,
@@ -46,16 +46,20 @@ struct Bent {
 
 impl Bending {
     /// Factors the systems of the target.
-    pub fn new(source: &Surface, target: &Surface, proposer: Option<Arc<Proposer>>) -> Result<Self, TransferError> {
+    pub fn new(
+        source: &WeldedSurface,
+        target: &WeldedSurface,
+        proposer: Option<Arc<Proposer>>,
+    ) -> Result<Self, TransferError> {
         let registration = Registration::new(target).map_err(|_| TransferError::Degenerate { side: "target" })?;
-        Ok(Self { ground: Ground::new(source), registration, proposer, last: None })
+        Ok(Self { closest: ClosestPoints::new(source), registration, proposer, last: None })
     }
 
     /// #N positions of the target's vertices, bent onto the source. If it is to be `quick`, from the result before, if
     /// there is one.
     pub fn bend(
         &mut self,
-        surfaces: (&Surface, &Surface),
+        surfaces: (&WeldedSurface, &WeldedSurface),
         pairs: &[Pair],
         alignment: Alignment,
         quick: bool,
@@ -67,7 +71,7 @@ impl Bending {
             Some(Bent { thought, at, hints }) => {
                 let (placed, start) = (displaced(&rest, &thought, &pins), displaced(&rest, &at, &pins));
                 let at = self.registration.bend(
-                    (source, &self.ground),
+                    (source, &self.closest),
                     target,
                     &shape(&rest, &placed),
                     start,
@@ -83,18 +87,29 @@ impl Bending {
         at
     }
 
-    /// For each vertex of the bent target its place on the source, and how far that is.
-    pub fn feet(&self, source: &Surface, target: &Surface, bent: &[DVec3]) -> Vec<Option<(Foot, f64)>> {
-        feet(source, &self.ground, target, bent)
+    /// For each vertex of the bent target the closest point of the source, and how far that is.
+    pub fn closest_points(
+        &self,
+        source: &WeldedSurface,
+        target: &WeldedSurface,
+        bent: &[DVec3],
+    ) -> Vec<Option<(SurfacePoint, f64)>> {
+        closest_points(source, &self.closest, target, bent)
     }
 
     /// What comes of pairs and guides, or of the pairs alone if that is better.
-    fn afresh(&self, surfaces: (&Surface, &Surface), rest: Vec<DVec3>, pairs: &[Pair], pins: &[Pin]) -> Bent {
+    fn afresh(
+        &self,
+        surfaces: (&WeldedSurface, &WeldedSurface),
+        rest: Vec<DVec3>,
+        pairs: &[Pair],
+        pins: &[Pin],
+    ) -> Bent {
         let (source, target) = surfaces;
         let from = |thought: Vec<DVec3>, hints: Vec<Pin>| {
             let placed = displaced(&rest, &thought, pins);
             let at = self.registration.bend(
-                (source, &self.ground),
+                (source, &self.closest),
                 target,
                 &shape(&rest, &placed),
                 placed,
@@ -127,7 +142,7 @@ fn shape(rest: &[DVec3], placed: &[DVec3]) -> Vec<DVec3> {
 }
 
 /// Vertices of the target and where they belong on the source.
-fn pinned(source: &Surface, target: &Surface, pairs: &[Pair]) -> Vec<Pin> {
+fn pinned(source: &WeldedSurface, target: &WeldedSurface, pairs: &[Pair]) -> Vec<Pin> {
     let pin = |pair: &Pair| {
         let [from, to] = [target.place[pair.target as usize], source.place[pair.source as usize]];
         Pin { vertex: from, point: source.positions[to as usize] }
@@ -151,9 +166,9 @@ fn smoothed(rest: &[DVec3], pins: &[Pin]) -> Vec<DVec3> {
 
 /// How badly a bent target lies on the source: the mean distance of the source from it, over its area. What is farther than
 /// [`LOST`] has no twin, however far it is. That the target has more than the source is no fault.
-fn misfit(source: &Surface, target: &Surface, bent: &[DVec3]) -> f64 {
+fn misfit(source: &WeldedSurface, target: &WeldedSurface, bent: &[DVec3]) -> f64 {
     let lying = target.bent(bent.to_vec());
-    let feet = feet(&lying, &Ground::new(&lying), source, &source.positions);
-    let far = feet.iter().zip(&source.mass).map(|(foot, mass)| mass * foot.map_or(LOST, |foot| foot.1.min(LOST)));
+    let found = closest_points(&lying, &ClosestPoints::new(&lying), source, &source.positions);
+    let far = found.iter().zip(&source.mass).map(|(on, mass)| mass * on.map_or(LOST, |(_, far)| far.min(LOST)));
     far.sum::<f64>() / source.mass.iter().sum::<f64>().max(f64::MIN_POSITIVE)
 }

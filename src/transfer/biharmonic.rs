@@ -5,7 +5,7 @@
 
 use super::Method;
 use super::alignment::Alignment;
-use super::surface::Surface;
+use super::surface::WeldedSurface;
 use crate::mesh::laplacian::Laplacian;
 use crate::skinning::{FitParameters, Fitter, Ring, Rows, SkinnedMesh, clusters, features};
 use glam::{DAffine3, DVec3};
@@ -19,7 +19,7 @@ const POSES: usize = 12;
 /// Fits the motions of key points of a surface to its poses (Eq. 3–5, 15), whose weights are #N rows × #H, row-major.
 ///
 /// `points` are their places; `poses` tell which vertices move alike, all in the unit ball.
-pub fn fitter(surface: &Surface, points: &[u32], weights: &[f64], poses: &[Vec<DVec3>]) -> Fitter {
+pub fn fitter(surface: &WeldedSurface, points: &[u32], weights: &[f64], poses: &[Vec<DVec3>]) -> Fitter {
     let Laplacian { edges, cotangents: stiffness, .. } = Laplacian::new(&surface.faces, &surface.positions);
     let ring = Ring { faces: &surface.faces, edges: &edges, stiffness: &stiffness, reference: &surface.positions };
     let step = poses.len().div_ceil(POSES).max(1);

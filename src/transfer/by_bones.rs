@@ -12,7 +12,7 @@ use super::propose::Proposer;
 use super::registration::LOST;
 use super::rig::Rig;
 use super::rig::weights::{Row, averaged, normalised};
-use super::surface::{Foot, Surface};
+use super::surface::{SurfacePoint, WeldedSurface};
 use super::{Pair, Skin, TransferError};
 use crate::sequence::Sequence;
 use crate::stopwatch::Stopwatch;
@@ -49,7 +49,7 @@ impl Bones {
     /// `proposer` for these two, one is made.
     pub fn new(
         (source, target): (&Sequence, &Sequence),
-        (here, there): (&Surface, &Surface),
+        (here, there): (&WeldedSurface, &WeldedSurface),
         most: usize,
         proposer: Option<Arc<Proposer>>,
         steps: &mut Stopwatch<'_>,
@@ -96,7 +96,7 @@ impl Bones {
     /// The target as a skin over the bones in all poses; if it is to be `quick`, from the result before.
     pub fn transfer(
         &mut self,
-        (source, target): (&Surface, &Surface),
+        (source, target): (&WeldedSurface, &WeldedSurface),
         pairs: &[Pair],
         alignment: Alignment,
         quick: bool,
@@ -116,7 +116,7 @@ impl Bones {
     }
 
     /// The maps of the bones on the target for any other pose in the source's unit ball; `None` before there was a result.
-    pub fn maps(&self, (source, target): (&Surface, &Surface), pose: Vec<DVec3>) -> Option<Vec<DAffine3>> {
+    pub fn maps(&self, (source, target): (&WeldedSurface, &WeldedSurface), pose: Vec<DVec3>) -> Option<Vec<DAffine3>> {
         let joints = self.joints.as_ref()?;
         let growth = growth(source, &pose);
         Some(carried(target, joints, &self.rig.follow(source, &shrunk(pose, growth)), growth))
@@ -125,20 +125,20 @@ impl Bones {
     /// #N rows of bones on the target, `bent` onto the source. Every `step`th of the telling poses is looked at for tears.
     fn rows(
         &self,
-        (source, target): (&Surface, &Surface),
+        (source, target): (&WeldedSurface, &WeldedSurface),
         pieces: (&Pieces, &Pieces),
         alignment: Alignment,
         bent: &[DVec3],
         step: usize,
     ) -> Vec<Row> {
-        let feet = self.bending.feet(source, target, bent);
-        let mut rows: Vec<Row> = feet.iter().map(|foot| self.pulled(source, foot.map(|f| f.0))).collect();
-        let lost: Vec<bool> = feet.iter().map(|foot| foot.is_none_or(|f| f.1 > LOST)).collect();
+        let closest = self.bending.closest_points(source, target, bent);
+        let lying: Vec<Option<SurfacePoint>> = closest.iter().map(|found| found.map(|(on, _)| on)).collect();
+        let mut rows: Vec<Row> = lying.iter().map(|&on| self.pulled(source, on)).collect();
+        let lost: Vec<bool> = closest.iter().map(|found| found.is_none_or(|(_, far)| far > LOST)).collect();
         fill(target, &mut rows, &lost);
         let rounds = (SMOOTHING * target.len() as f64 / SMOOTHED).min(MOST_SMOOTHING);
         rows = averaged(target, rows, INFLUENCES, rounds);
-        let feet: Vec<Option<Foot>> = feet.iter().map(|foot| foot.map(|f| f.0)).collect();
-        layers::lay((source, target), pieces, &feet, &mut rows, INFLUENCES);
+        layers::lay((source, target), pieces, &lying, &mut rows, INFLUENCES);
         let first = Joints::new(source, &self.rig, target, &rows, alignment);
         let seen = self.rig.telling.iter().step_by(step).filter_map(|&pose| self.rig.maps.get(pose));
         let seen: Vec<Vec<DAffine3>> = seen.map(|maps| first.carry(maps)).collect();
@@ -149,10 +149,10 @@ impl Bones {
     }
 
     /// The weights of the source at a place on it.
-    fn pulled(&self, source: &Surface, foot: Option<Foot>) -> Row {
-        let Some(foot) = foot else { return vec![(0, 1.0)] };
+    fn pulled(&self, source: &WeldedSurface, on: Option<SurfacePoint>) -> Row {
+        let Some(on) = on else { return vec![(0, 1.0)] };
         let mut row: Row = Vec::new();
-        for (&v, share) in source.faces[foot.face as usize].iter().zip(foot.shares) {
+        for (&v, share) in source.faces[on.face as usize].iter().zip(on.shares) {
             for &(bone, weight) in self.rig.rows.get(v as usize).into_iter().flatten() {
                 match row.iter_mut().find(|entry| entry.0 == bone) {
                     Some(entry) => entry.1 += share * weight,
@@ -165,7 +165,7 @@ impl Bones {
 }
 
 /// The pieces of the source and of the target, marked where there is a pair.
-fn pieces(source: &Surface, target: &Surface, pairs: &[Pair]) -> (Pieces, Pieces) {
+fn pieces(source: &WeldedSurface, target: &WeldedSurface, pairs: &[Pair]) -> (Pieces, Pieces) {
     let here = pairs.iter().map(|pair| source.place[pair.source as usize]);
     let there = pairs.iter().map(|pair| target.place[pair.target as usize]);
     (Pieces::new(source, here), Pieces::new(target, there))
@@ -173,7 +173,7 @@ fn pieces(source: &Surface, target: &Surface, pairs: &[Pair]) -> (Pieces, Pieces
 
 /// The maps of the bones on the target, in its own units, of those on the source, which is so many times as large as at
 /// rest.
-fn carried(target: &Surface, joints: &Joints, maps: &[DAffine3], growth: f64) -> Vec<DAffine3> {
+fn carried(target: &WeldedSurface, joints: &Joints, maps: &[DAffine3], growth: f64) -> Vec<DAffine3> {
     let there: Vec<DAffine3> = joints.carry(maps).iter().map(|map| grown(map, growth)).collect();
     target.outward(&there)
 }

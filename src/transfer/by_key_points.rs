@@ -3,7 +3,7 @@
 use super::alignment::Alignment;
 use super::biharmonic;
 use super::rig::weights::{Row, normalised};
-use super::surface::Surface;
+use super::surface::WeldedSurface;
 use super::{Method, Pair, Skin, TransferError};
 use crate::sequence::Sequence;
 use crate::skinning::Fitter;
@@ -36,7 +36,7 @@ impl KeyPoints {
     /// Factors the systems.
     pub fn new(
         (source, target): (&Sequence, &Sequence),
-        here: &Surface,
+        here: &WeldedSurface,
         method: Method,
         steps: &mut Stopwatch<'_>,
     ) -> Result<Self, TransferError> {
@@ -54,7 +54,7 @@ impl KeyPoints {
     /// where the pairs lie, in unit balls.
     pub fn transfer(
         &mut self,
-        (source, target): (&Surface, &Surface),
+        (source, target): (&WeldedSurface, &WeldedSurface),
         pairs: &[Pair],
         points: Vec<(DVec3, DVec3)>,
         alignment: Alignment,
@@ -83,7 +83,7 @@ impl KeyPoints {
 
     /// The maps of the key points on the target for any other pose in the source's unit ball; `None` before there was a
     /// result.
-    pub fn maps(&self, target: &Surface, pose: &[DVec3]) -> Option<Vec<DAffine3>> {
+    pub fn maps(&self, target: &WeldedSurface, pose: &[DVec3]) -> Option<Vec<DAffine3>> {
         Some(self.carrier.as_ref()?.maps(self.method, target, pose))
     }
 
@@ -101,7 +101,7 @@ impl KeyPoints {
 }
 
 impl Carrier {
-    fn maps(&self, method: Method, target: &Surface, pose: &[DVec3]) -> Vec<DAffine3> {
+    fn maps(&self, method: Method, target: &WeldedSurface, pose: &[DVec3]) -> Vec<DAffine3> {
         let maps = self.fitter.fit(pose).maps;
         let there = maps.iter().zip(&self.points);
         let there = there.map(|(map, &pair)| biharmonic::carried(method, self.alignment, pair, map));

@@ -1,15 +1,15 @@
 //! Meshes and pairs as people give them.
 
-use super::surface::Surface;
+use super::surface::WeldedSurface;
 use super::{Pair, TransferError};
 use crate::sequence::Sequence;
 use crate::warning::Warning;
 use std::collections::BTreeMap;
 
 /// The surfaces of a source and of a target, both with faces; the target's pieces are tied.
-pub fn surfaces(source: &Sequence, target: &Sequence) -> Result<[Surface; 2], TransferError> {
+pub fn surfaces(source: &Sequence, target: &Sequence) -> Result<[WeldedSurface; 2], TransferError> {
     let surface = |sequence: &Sequence, side: &'static str| {
-        let surface = Surface::new(sequence);
+        let surface = WeldedSurface::new(sequence);
         if surface.faces.is_empty() { Err(TransferError::NoFaces { side }) } else { Ok(surface) }
     };
     Ok([surface(source, "source")?, surface(target, "target")?.tied()])
@@ -17,8 +17,8 @@ pub fn surfaces(source: &Sequence, target: &Sequence) -> Result<[Surface; 2], Tr
 
 /// The pairs without repetitions, their vertices within range; what was left out or is scarce goes to the warnings.
 pub fn checked(
-    source: &Surface,
-    target: &Surface,
+    source: &WeldedSurface,
+    target: &WeldedSurface,
     pairs: &[Pair],
     warnings: &mut Vec<Warning>,
 ) -> Result<Vec<Pair>, TransferError> {
@@ -28,7 +28,8 @@ pub fn checked(
     let mut kept: Vec<Pair> = Vec::with_capacity(pairs.len());
     let mut seen = [BTreeMap::new(), BTreeMap::new()];
     for (number, pair) in pairs.iter().enumerate() {
-        let place = |side: &'static str, surface: &Surface, vertex: u32| match surface.place.get(vertex as usize) {
+        let place = |side: &'static str, surface: &WeldedSurface, vertex: u32| match surface.place.get(vertex as usize)
+        {
             Some(&place) => Ok(place),
             None => Err(TransferError::OutOfRange { pair: number, side, vertex, vertices: surface.place.len() }),
         };

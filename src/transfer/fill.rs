@@ -2,12 +2,12 @@
 
 use super::mend::SHORT;
 use super::rig::weights::{LEAST, Row, normalised};
-use super::surface::Surface;
+use super::surface::WeldedSurface;
 use crate::linalg::cholesky::Cholesky;
 
 /// Gives `lost` vertices weights that are harmonic along the surface between those of the others; pieces that are lost
 /// altogether keep theirs.
-pub fn fill(surface: &Surface, rows: &mut [Row], lost: &[bool]) {
+pub fn fill(surface: &WeldedSurface, rows: &mut [Row], lost: &[bool]) {
     let (region, number) = grown(surface, lost);
     let bones = beside(surface, rows, lost, &region);
     let n = region.len();
@@ -40,7 +40,7 @@ pub fn fill(surface: &Surface, rows: &mut [Row], lost: &[bool]) {
 }
 
 /// The lost vertices that hang together with others, and for each vertex its number among them.
-fn grown(surface: &Surface, lost: &[bool]) -> (Vec<u32>, Vec<Option<u32>>) {
+fn grown(surface: &WeldedSurface, lost: &[bool]) -> (Vec<u32>, Vec<Option<u32>>) {
     let mut number = vec![None; lost.len()];
     let mut region: Vec<u32> = Vec::new();
     let roots = (0..lost.len()).filter(|&v| !lost[v]);
@@ -58,7 +58,7 @@ fn grown(surface: &Surface, lost: &[bool]) -> (Vec<u32>, Vec<Option<u32>>) {
 }
 
 /// The bones, in order, of what is not lost next to a region.
-fn beside(surface: &Surface, rows: &[Row], lost: &[bool], region: &[u32]) -> Vec<u32> {
+fn beside(surface: &WeldedSurface, rows: &[Row], lost: &[bool], region: &[u32]) -> Vec<u32> {
     let around = region.iter().flat_map(|&v| surface.neighbours(v as usize)).filter(|&&u| !lost[u as usize]);
     let mut bones: Vec<u32> = around.flat_map(|&u| rows[u as usize].iter().map(|entry| entry.0)).collect();
     bones.sort_unstable();

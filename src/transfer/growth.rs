@@ -1,6 +1,6 @@
 //! Figures that grow and shrink as a whole: taken out before rigid bones are sought, and put back in what follows them.
 
-use super::surface::Surface;
+use super::surface::WeldedSurface;
 use glam::{DAffine3, DVec3};
 
 /// A figure within this share of its own size has that size: limbs that bend stretch a little skin.
@@ -8,7 +8,7 @@ const STEADY: f64 = 0.02;
 
 /// How many times as large as at rest a surface is in a pose (#N positions in its unit ball): the median over its edges,
 /// 1 if that is nearly so.
-pub fn growth(surface: &Surface, pose: &[DVec3]) -> f64 {
+pub fn growth(surface: &WeldedSurface, pose: &[DVec3]) -> f64 {
     let upward = |v: usize| surface.neighbours(v).iter().map(move |&u| (v, u as usize)).filter(|(v, u)| v < u);
     let ratio = |(a, b): (usize, usize)| {
         let rest = surface.positions[a].distance(surface.positions[b]);

@@ -9,7 +9,7 @@ use super::alignment::Alignment;
 use super::rig::Rig;
 use super::rig::blends::{Blend, blends};
 use super::rig::weights::{Row, main_bone};
-use super::surface::Surface;
+use super::surface::WeldedSurface;
 use crate::mesh::kd_tree::KdTree;
 use glam::{DAffine3, DVec3};
 use nalgebra::{Cholesky, DMatrix, Dyn};
@@ -42,7 +42,7 @@ pub struct Joints {
 
 impl Joints {
     /// Finds the links; `rows` are the weights of the same bones on the target.
-    pub fn new(source: &Surface, rig: &Rig, target: &Surface, rows: &[Row], alignment: Alignment) -> Self {
+    pub fn new(source: &WeldedSurface, rig: &Rig, target: &WeldedSurface, rows: &[Row], alignment: Alignment) -> Self {
         let there = blends(target, rows, rig.bones);
         let mut links: Vec<Link> = Vec::new();
         let mut bones = vec![(DVec3::ZERO, DVec3::ZERO, 0.0); rig.bones];
@@ -106,7 +106,7 @@ impl Joints {
 
 /// Links groups of bones that blend with no other group (pieces of the mesh, such as eyes) to what is nearest on the
 /// source: their middle then moves with that.
-fn join_loose(source: &Surface, rig: &Rig, bones: &[(DVec3, DVec3, f64)], links: &mut Vec<Link>) {
+fn join_loose(source: &WeldedSurface, rig: &Rig, bones: &[(DVec3, DVec3, f64)], links: &mut Vec<Link>) {
     let strongest = links.iter().map(|link| link.weight).fold(0.0, f64::max);
     let weight = if strongest > 0.0 { LOOSE * strongest } else { LOOSE };
     let main: Vec<u32> = rig.rows.iter().map(main_bone).collect();

@@ -6,7 +6,7 @@
 use super::fill::fill;
 use super::mend::{SHORT, SMALL};
 use super::rig::weights::{Averager, Row, main_bone};
-use super::surface::{Foot, Surface};
+use super::surface::{SurfacePoint, WeldedSurface};
 use crate::mesh::groups::Groups;
 use crate::mesh::kd_tree::KdTree;
 use glam::DVec3;
@@ -31,7 +31,7 @@ pub struct Pieces {
 
 impl Pieces {
     /// Of a surface with some marked places.
-    pub fn new(surface: &Surface, marks: impl Iterator<Item = u32>) -> Self {
+    pub fn new(surface: &WeldedSurface, marks: impl Iterator<Item = u32>) -> Self {
         let places = surface.pieces();
         let number = surface.numbered(&places);
         let mut held = vec![false; places.len()];
@@ -40,7 +40,7 @@ impl Pieces {
     }
 
     /// #N shares of the area, those of pieces with a mark: together, they are 1.
-    pub fn areas(&self, surface: &Surface) -> Vec<f64> {
+    pub fn areas(&self, surface: &WeldedSurface) -> Vec<f64> {
         let mut areas: Vec<f64> = surface.mass.clone();
         areas.iter_mut().zip(&self.marked).filter(|(_, marked)| !**marked).for_each(|(area, _)| *area = 0.0);
         let sum: f64 = areas.iter().sum();
@@ -55,16 +55,16 @@ impl Pieces {
 }
 
 /// Gives layers of the target rows of at most `most` entries from what lies beneath them. `pieces` are those of the source
-/// and of the target, marked where there is a pair; `feet` tell where the target lies on the source.
+/// and of the target, marked where there is a pair; `lying` tells where the target lies on the source (#N).
 pub fn lay(
-    (source, target): (&Surface, &Surface),
+    (source, target): (&WeldedSurface, &WeldedSurface),
     pieces: (&Pieces, &Pieces),
-    feet: &[Option<Foot>],
+    lying: &[Option<SurfacePoint>],
     rows: &mut [Row],
     most: usize,
 ) {
     let twinless =
-        |&v: &u32| feet[v as usize].is_some_and(|foot| pieces.0.marked[source.faces[foot.face as usize][0] as usize]);
+        |&v: &u32| lying[v as usize].is_some_and(|on| pieces.0.marked[source.faces[on.face as usize][0] as usize]);
     let mut unmarked = pieces.1.unmarked();
     unmarked.retain(|piece| 2 * piece.iter().filter(|&v| twinless(v)).count() >= piece.len());
     if unmarked.is_empty() {
@@ -81,7 +81,7 @@ pub fn lay(
 
 /// What layers lie on.
 struct Body<'a> {
-    surface: &'a Surface,
+    surface: &'a WeldedSurface,
     places: Vec<u32>,
     tree: KdTree<3>,
     /// For each bone and each other, whether they are one or meet somewhere on it.
@@ -91,7 +91,7 @@ struct Body<'a> {
 impl<'a> Body<'a> {
     /// The marked places of a surface, and the pieces that are no layers on these: a body may be in pieces itself. Of
     /// `pieces`, layers remain.
-    fn of_layers(surface: &'a Surface, marked: &[bool], pieces: &mut Vec<Vec<u32>>, rows: &[Row]) -> Self {
+    fn of_layers(surface: &'a WeldedSurface, marked: &[bool], pieces: &mut Vec<Vec<u32>>, rows: &[Row]) -> Self {
         let held = Self::new(surface, marked, rows);
         let mut all = marked.to_vec();
         pieces.retain(|piece| {
@@ -103,7 +103,7 @@ impl<'a> Body<'a> {
     }
 
     /// The marked places of a surface, one at least.
-    fn new(surface: &'a Surface, marked: &[bool], rows: &[Row]) -> Self {
+    fn new(surface: &'a WeldedSurface, marked: &[bool], rows: &[Row]) -> Self {
         let places: Vec<u32> = (0..surface.len() as u32).filter(|&v| marked[v as usize]).collect();
         let points: Vec<[f64; 3]> = places.iter().map(|&v| surface.positions[v as usize].to_array()).collect();
         let bone: Vec<u32> = rows.iter().map(main_bone).collect();
@@ -126,7 +126,7 @@ impl<'a> Body<'a> {
     fn lies_under(&self, piece: &[u32]) -> bool {
         let (mut sum, mut over, mut all) = (0.0, 0.0, 0.0);
         for (&v, &u) in piece.iter().zip(self.beneath(piece).iter().flatten()) {
-            let Surface { positions, normals, mass, .. } = self.surface;
+            let WeldedSurface { positions, normals, mass, .. } = self.surface;
             let (at, mass) = (positions[v as usize], mass[v as usize]);
             let way = self.surface.nearest_around(u, at).map_or(DVec3::ZERO, |found| found.1 - at);
             sum += mass * way.length();
@@ -163,7 +163,7 @@ impl<'a> Body<'a> {
 }
 
 /// Averages the rows along a piece.
-fn even(target: &Surface, piece: &[u32], rows: &mut [Row], most: usize) {
+fn even(target: &WeldedSurface, piece: &[u32], rows: &mut [Row], most: usize) {
     let lengths = piece.iter().flat_map(|&v| {
         target
             .neighbours(v as usize)

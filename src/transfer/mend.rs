@@ -4,7 +4,7 @@
 
 use super::rig::blend;
 use super::rig::weights::{Averager, Row, normalised};
-use super::surface::Surface;
+use super::surface::WeldedSurface;
 use glam::{DAffine3, DVec3};
 use std::collections::{BTreeMap, BinaryHeap};
 
@@ -27,7 +27,7 @@ pub const SMALL: f64 = 0.1;
 pub const SHORT: f64 = 2e-3;
 
 /// By how much edges of a moving surface may become longer on another that follows it.
-pub fn allowed(surface: &Surface, poses: &[&[DVec3]]) -> f64 {
+pub fn allowed(surface: &WeldedSurface, poses: &[&[DVec3]]) -> f64 {
     let mut stretches: Vec<f64> =
         edges(surface).map(|(a, b)| longest(surface, a, b, |v, pose| poses[pose][v], poses.len())).collect();
     if stretches.is_empty() {
@@ -42,7 +42,7 @@ pub fn allowed(surface: &Surface, poses: &[&[DVec3]]) -> f64 {
 /// `poses` are the maps of the handles.
 ///
 /// What comes apart by some length needs a strip in proportion to it, where all edges become a little longer.
-pub fn close(surface: &Surface, rows: &mut [Row], poses: &[&[DAffine3]], allowed: f64, most: usize) {
+pub fn close(surface: &WeldedSurface, rows: &mut [Row], poses: &[&[DAffine3]], allowed: f64, most: usize) {
     let follow = |v: usize, row: &Row, moved: &mut [DVec3]| {
         moved.iter_mut().zip(poses).for_each(|(at, maps)| *at = blend(row, maps, surface.positions[v]));
     };
@@ -84,7 +84,7 @@ pub fn close(surface: &Surface, rows: &mut [Row], poses: &[&[DAffine3]], allowed
 }
 
 /// Gives all vertices of a small piece one row of at most `most` entries, where there is more than such pieces.
-pub fn stiffen(surface: &Surface, rows: &mut [Row], most: usize) {
+pub fn stiffen(surface: &WeldedSurface, rows: &mut [Row], most: usize) {
     let small = small_pieces(surface);
     if small.iter().map(Vec::len).sum::<usize>() == surface.len() {
         return;
@@ -96,14 +96,14 @@ pub fn stiffen(surface: &Surface, rows: &mut [Row], most: usize) {
 }
 
 /// The vertices of each small piece.
-fn small_pieces(surface: &Surface) -> Vec<Vec<u32>> {
+fn small_pieces(surface: &WeldedSurface) -> Vec<Vec<u32>> {
     let mut pieces = surface.pieces();
     pieces.retain(|piece| surface.sides(piece).max_element() <= SMALL);
     pieces
 }
 
 /// The mean of the rows of some vertices, by their shares of the area.
-fn mean(surface: &Surface, rows: &[Row], vertices: &[u32], most: usize) -> Row {
+fn mean(surface: &WeldedSurface, rows: &[Row], vertices: &[u32], most: usize) -> Row {
     let mut sum = BTreeMap::new();
     for &v in vertices {
         for &(bone, share) in &rows[v as usize] {
@@ -121,7 +121,7 @@ fn strongest(mut row: Row, most: usize) -> Row {
 }
 
 /// Vertices that along edges are nearer to one of some vertices than that one's reach.
-fn within(surface: &Surface, from: &[(f64, u32)]) -> Vec<u32> {
+fn within(surface: &WeldedSurface, from: &[(f64, u32)]) -> Vec<u32> {
     let mut left: BTreeMap<u32, f64> = BTreeMap::new();
     let mut heap: BinaryHeap<(u64, u32)> = from.iter().map(|&(reach, v)| (reach.to_bits(), v)).collect();
     while let Some((bits, v)) = heap.pop() {
@@ -140,13 +140,13 @@ fn within(surface: &Surface, from: &[(f64, u32)]) -> Vec<u32> {
     left.into_keys().collect()
 }
 
-fn edges(surface: &Surface) -> impl Iterator<Item = (usize, usize)> + '_ {
+fn edges(surface: &WeldedSurface) -> impl Iterator<Item = (usize, usize)> + '_ {
     let upward = |v: usize| surface.neighbours(v).iter().map(move |&u| (v, u as usize)).filter(|(v, u)| v < u);
     (0..surface.len()).flat_map(upward)
 }
 
 /// The largest factor by which an edge becomes longer in any pose.
-fn longest(surface: &Surface, a: usize, b: usize, at: impl Fn(usize, usize) -> DVec3, poses: usize) -> f64 {
+fn longest(surface: &WeldedSurface, a: usize, b: usize, at: impl Fn(usize, usize) -> DVec3, poses: usize) -> f64 {
     let rest = surface.positions[a].distance(surface.positions[b]).max(SHORT);
     (0..poses).map(|pose| at(a, pose).distance_squared(at(b, pose))).fold(0.0, f64::max).sqrt() / rest
 }

@@ -5,7 +5,7 @@ use super::by_bones::Bones;
 use super::by_key_points::KeyPoints;
 use super::checked::{checked, surfaces};
 use super::propose::Proposer;
-use super::surface::Surface;
+use super::surface::WeldedSurface;
 use super::{Pair, Parameters, Transfer, TransferError};
 use crate::observer::Observer;
 use crate::sequence::Sequence;
@@ -16,8 +16,8 @@ use std::sync::Arc;
 
 /// What does not change while pairs are placed: what is known of both meshes, and the factored systems.
 pub struct Prepared {
-    source: Surface,
-    target: Surface,
+    source: WeldedSurface,
+    target: WeldedSurface,
     family: Family,
     seconds: Vec<(&'static str, f64)>,
 }

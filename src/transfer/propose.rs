@@ -1,6 +1,6 @@
 //! Where the key points of one mesh lie on another, without being told, or told of some of them.
 //!
-//! Both surfaces are thinned out to samples with all distances between them (`surface`). A spread of the source's
+//! Both surfaces are thinned out to samples with all distances between them (`sampled`). A spread of the source's
 //! samples and the points asked for (`crowd`) look for their places together (`consensus`), from several starts (`starts`):
 //! the figures laid over each other as they stand, turned (`ways`), or pulled to given pairs and tips, and from the other
 //! side; the outcome in which points agree best with each other counts (`stands`). Given pairs stay as they are and are
@@ -17,10 +17,10 @@ mod consensus;
 mod crowd;
 mod distances;
 mod refine;
+mod sampled;
 mod similarity;
 mod stands;
 mod starts;
-mod surface;
 mod tips;
 mod ways;
 
@@ -30,9 +30,9 @@ use consensus::{Consensus, LAST};
 use crowd::{COMPANY, Crowd, Figures};
 use glam::DVec3;
 use refine::{Found, Refiner};
+use sampled::{SAMPLES, SampledSurface};
 use serde::Serialize;
 use stands::Stand;
-use surface::{SAMPLES, Surface};
 
 /// How far points listen in the rounds after tips that have met are held.
 const REACHES_WITH_TIPS: [f64; 4] = [0.1; 4];
@@ -99,8 +99,8 @@ pub fn guides(proposer: Option<&Proposer>, pairs: &[Pair]) -> Vec<Pair> {
 
 /// Two meshes, prepared for proposals.
 pub struct Proposer {
-    source: Surface,
-    target: Surface,
+    source: SampledSurface,
+    target: SampledSurface,
     /// How the figures may lie over each other, the likeliest first, and where the company comes to lie.
     stands: Vec<Stand>,
     refiner: Option<Refiner>,
@@ -117,8 +117,10 @@ impl Proposer {
         target_faces: &[[u32; 3]],
         target_positions: &[DVec3],
     ) -> Result<Self, ProposeError> {
-        let source = Surface::new(source_faces, source_positions, SAMPLES).ok_or(ProposeError::Empty("source"))?;
-        let target = Surface::new(target_faces, target_positions, SAMPLES).ok_or(ProposeError::Empty("target"))?;
+        let source =
+            SampledSurface::new(source_faces, source_positions, SAMPLES).ok_or(ProposeError::Empty("source"))?;
+        let target =
+            SampledSurface::new(target_faces, target_positions, SAMPLES).ok_or(ProposeError::Empty("target"))?;
         let refiner = Refiner::new(&source, &target);
         let mut proposer = Self { source, target, stands: Vec::new(), refiner };
         proposer.stands = stands::stands(proposer.figures());

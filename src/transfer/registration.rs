@@ -5,7 +5,7 @@
 //! Jovan Popović, *Deformation transfer for triangle meshes*, SIGGRAPH 2004, §4. The system of each strength of the pull
 //! is factored once; a round is one solve.
 
-use super::surface::{Foot, Surface};
+use super::surface::{SurfacePoint, WeldedSurface};
 use crate::linalg::cholesky::{Cholesky, NotPositiveDefinite};
 use crate::linalg::outer::outer;
 use crate::linalg::polar;
@@ -36,24 +36,24 @@ const LEAST_COTANGENT: f64 = 0.01;
 /// What a tie between two pieces weighs, as a cotangent.
 const TIE: f64 = 0.1;
 
-/// The source as something to be found on.
-pub struct Ground {
+/// The closest points of the source, for points with normals.
+pub struct ClosestPoints {
     tree: KdTree<6>,
 }
 
-impl Ground {
+impl ClosestPoints {
     /// Prepares a surface.
-    pub fn new(surface: &Surface) -> Self {
+    pub fn new(surface: &WeldedSurface) -> Self {
         let points: Vec<[f64; 6]> = surface.positions.iter().zip(&surface.normals).map(|(&p, &n)| key(p, n)).collect();
         Self { tree: KdTree::new(&points) }
     }
 
-    /// The nearest place on the source to a point with a normal, seen from the nearest vertex; `None` for a surface
-    /// without faces.
-    pub fn foot(&self, surface: &Surface, point: DVec3, normal: DVec3) -> Option<(Foot, DVec3, u32)> {
+    /// The closest point of the source to a point with a normal, where that is, and the nearest vertex, from which it is
+    /// seen; `None` for a surface without faces.
+    pub fn of(&self, surface: &WeldedSurface, point: DVec3, normal: DVec3) -> Option<(SurfacePoint, DVec3, u32)> {
         let vertex = self.tree.nearest_roughly(FAR, &key(point, normal))?;
-        let (foot, place) = surface.nearest_around(vertex, point)?;
-        Some((foot, place, vertex))
+        let (found, at) = surface.nearest_around(vertex, point)?;
+        Some((found, at, vertex))
     }
 }
 
@@ -99,7 +99,7 @@ pub struct Registration {
 
 impl Registration {
     /// Factors the systems of a target.
-    pub fn new(target: &Surface) -> Result<Self, NotPositiveDefinite> {
+    pub fn new(target: &WeldedSurface) -> Result<Self, NotPositiveDefinite> {
         let laplacian = Laplacian::new(&target.faces, &target.positions);
         let within = laplacian.edges.iter().zip(&laplacian.cotangents).map(|(&e, &c)| (e, c.max(LEAST_COTANGENT)));
         let edges: Vec<([u32; 2], f64)> = within.chain(target.ties().iter().map(|&(a, b)| ([a, b], TIE))).collect();
@@ -122,8 +122,8 @@ impl Registration {
     /// `rest` has the shape that is kept, `start` is where the target is thought to end.
     pub fn bend(
         &self,
-        (source, ground): (&Surface, &Ground),
-        target: &Surface,
+        (source, closest): (&WeldedSurface, &ClosestPoints),
+        target: &WeldedSurface,
         rest: &[DVec3],
         start: Vec<DVec3>,
         known: Known,
@@ -139,7 +139,7 @@ impl Registration {
         for level in first..PULLS.len() {
             for _ in 0..rounds {
                 let reach = if level < ROUGH { f64::INFINITY } else { LOST };
-                let mut goal = goals((source, ground), target, &at, &owners, reach);
+                let mut goal = goals((source, closest), target, &at, &owners, reach);
                 known.pins.iter().for_each(|pin| goal[pin.vertex as usize] = pin.point);
                 self.solve(level, target, rest, &mut at, &goal);
             }
@@ -148,7 +148,7 @@ impl Registration {
     }
 
     /// One round: rotations of the vertices, then positions.
-    fn solve(&self, level: usize, target: &Surface, rest: &[DVec3], at: &mut [DVec3], goal: &[DVec3]) {
+    fn solve(&self, level: usize, target: &WeldedSurface, rest: &[DVec3], at: &mut [DVec3], goal: &[DVec3]) {
         let (Some(factor), Some(pull)) = (self.factors.get(level), PULLS.get(level)) else { return };
         let turns = self.turns(rest, at);
         let n = at.len();
@@ -199,7 +199,7 @@ impl Owners {
     }
 
     /// Whether a place of the source may be that of a vertex of the target.
-    fn allow(&self, target: &Surface, vertex: usize, place: DVec3) -> bool {
+    fn allow(&self, target: &WeldedSurface, vertex: usize, place: DVec3) -> bool {
         let nearest = self.tree.nearest(&place.to_array()).and_then(|number| self.pins.get(number as usize));
         nearest.is_none_or(|pin| {
             let apart = target.positions[vertex].distance(target.positions[pin.vertex as usize]);
@@ -211,24 +211,29 @@ impl Owners {
 /// For each vertex the nearest place of the source, or where it is if that faces another way, is farther than `lost`, or
 /// another's.
 fn goals(
-    (source, ground): (&Surface, &Ground),
-    target: &Surface,
+    (source, closest): (&WeldedSurface, &ClosestPoints),
+    target: &WeldedSurface,
     at: &[DVec3],
     owners: &Owners,
     lost: f64,
 ) -> Vec<DVec3> {
     let normals = target.normals_of(at);
     let goal = |(v, (&p, &n)): (usize, (&DVec3, &DVec3))| {
-        let (_, foot, vertex) = ground.foot(source, p, n)?;
-        let agrees = source.normals[vertex as usize].dot(n) > AGREE && foot.distance_squared(p) < lost * lost;
-        (agrees && owners.allow(target, v, foot)).then_some(foot)
+        let (_, found, vertex) = closest.of(source, p, n)?;
+        let agrees = source.normals[vertex as usize].dot(n) > AGREE && found.distance_squared(p) < lost * lost;
+        (agrees && owners.allow(target, v, found)).then_some(found)
     };
     at.iter().zip(&normals).enumerate().map(|vertex| goal(vertex).unwrap_or(*vertex.1.0)).collect()
 }
 
-/// For each vertex of the bent target its place on the source, and how far that is.
-pub fn feet(source: &Surface, ground: &Ground, target: &Surface, at: &[DVec3]) -> Vec<Option<(Foot, f64)>> {
+/// For each vertex of the bent target the closest point of the source, and how far that is.
+pub fn closest_points(
+    source: &WeldedSurface,
+    closest: &ClosestPoints,
+    target: &WeldedSurface,
+    at: &[DVec3],
+) -> Vec<Option<(SurfacePoint, f64)>> {
     let normals = target.normals_of(at);
-    let foot = |(&p, &n)| ground.foot(source, p, n).map(|(foot, place, _)| (foot, place.distance(p)));
-    at.iter().zip(&normals).map(foot).collect()
+    let of_vertex = |(&p, &n)| closest.of(source, p, n).map(|(found, at, _)| (found, at.distance(p)));
+    at.iter().zip(&normals).map(of_vertex).collect()
 }

@@ -1,7 +1,7 @@
 //! The result as a skin.
 
 use super::rig::weights::Row;
-use super::surface::Surface;
+use super::surface::WeldedSurface;
 use glam::{DAffine3, DVec3};
 
 /// A mesh that follows handles: what the page plays and the light export writes.
@@ -19,7 +19,7 @@ pub struct Skin {
 
 impl Skin {
     /// A skin of `count` handles over all given vertices, of #N rows for the places of the target.
-    pub(super) fn new(target: &Surface, count: usize, rows: &[Row], maps: Vec<Vec<DAffine3>>) -> Self {
+    pub(super) fn new(target: &WeldedSurface, count: usize, rows: &[Row], maps: Vec<Vec<DAffine3>>) -> Self {
         let mut strongest = vec![(0.0, 0); count];
         for (row, &vertex) in rows.iter().zip(&target.vertex) {
             for &(handle, share) in row {

@@ -15,7 +15,7 @@ const WELD_TOLERANCE: f64 = 1e-6;
 
 /// A place on a mesh: a face, and the shares of its corners.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Foot {
+pub struct SurfacePoint {
     /// The number of the face.
     pub face: u32,
     /// Shares that sum to 1.
@@ -24,7 +24,7 @@ pub struct Foot {
 
 /// The vertices that faces use, one for each place on the surface, about the centre of the mesh and in its radius.
 #[derive(Clone, Debug)]
-pub struct Surface {
+pub struct WeldedSurface {
     /// For each given vertex, its place here; for a vertex without a face the nearest place.
     pub place: Vec<u32>,
     /// For each place, the first given vertex there.
@@ -51,7 +51,7 @@ pub struct Surface {
     ties: Vec<(u32, u32)>,
 }
 
-impl Surface {
+impl WeldedSurface {
     /// The surface of a sequence's reference pose. Vertices are one if they agree in the reference and in every pose.
     pub fn new(sequence: &Sequence) -> Self {
         let (centre, radius) = unit_ball(sequence.faces(), sequence.reference());
@@ -168,12 +168,12 @@ impl Surface {
     }
 
     /// What is nearest to a point on the faces around a place, and where that is.
-    pub fn nearest_around(&self, place: u32, point: DVec3) -> Option<(Foot, DVec3)> {
+    pub fn nearest_around(&self, place: u32, point: DVec3) -> Option<(SurfacePoint, DVec3)> {
         let at = |&face: &u32| {
             let corners = self.faces[face as usize].map(|v| self.positions[v as usize]);
             let shares = nearest_in_triangle(point, corners);
             let at = corners[0] * shares[0] + corners[1] * shares[1] + corners[2] * shares[2];
-            (Foot { face, shares }, at, at.distance_squared(point))
+            (SurfacePoint { face, shares }, at, at.distance_squared(point))
         };
         let found = self.faces_around(place as usize).iter().map(at).min_by(|a, b| a.2.total_cmp(&b.2))?;
         Some((found.0, found.1))
@@ -202,7 +202,7 @@ impl Surface {
         places
     }
 
-    /// For each place the number of its piece among [`Surface::pieces`].
+    /// For each place the number of its piece among [`WeldedSurface::pieces`].
     pub fn numbered(&self, pieces: &[Vec<u32>]) -> Vec<u32> {
         let mut number = vec![0; self.len()];
         for (places, n) in pieces.iter().zip(0..) {

@@ -1,6 +1,6 @@
 //! Which pieces of a body belong together: a robot's shank hangs on its thigh, though no face joins them.
 
-use super::surface::Surface;
+use super::surface::WeldedSurface;
 use crate::mesh::kd_tree::KdTree;
 
 /// Pieces farther apart than this, in radii, do not touch.
@@ -17,7 +17,7 @@ const TOUCH: f64 = 0.02;
 const MOST: f64 = 0.5;
 
 /// Pairs of places, one with the nearest of another piece, all along where pieces of a surface touch.
-pub fn ties(surface: &Surface) -> Vec<(u32, u32)> {
+pub fn ties(surface: &WeldedSurface) -> Vec<(u32, u32)> {
     let pieces = surface.pieces();
     if pieces.len() < 2 {
         return Vec::new();
@@ -53,7 +53,7 @@ pub fn ties(surface: &Surface) -> Vec<(u32, u32)> {
 type Contact = ((u32, u32), f64);
 
 /// Each place, but for those of the largest piece, with the nearest of another piece, if that is within reach.
-fn contacts(surface: &Surface, pieces: &[Vec<u32>], piece: &[u32]) -> Vec<Contact> {
+fn contacts(surface: &WeldedSurface, pieces: &[Vec<u32>], piece: &[u32]) -> Vec<Contact> {
     let tree = KdTree::of_points(&surface.positions);
     let nearest = |v: u32, reach: f64, wanted: &dyn Fn(u32) -> bool| {
         let (far, u) = tree.nearest_within(reach * reach, &surface.positions[v as usize].to_array(), wanted)?;

@@ -15,7 +15,7 @@ use crate::mesh::face;
 use crate::transfer::gradients::normal::{Equations, Terms, columns};
 use crate::transfer::gradients::operator::{Gradient, gradients};
 use crate::transfer::gradients::solver::bridging;
-use crate::transfer::surface::Surface;
+use crate::transfer::surface::WeldedSurface;
 use glam::{DMat3, DVec3};
 use serde::{Deserialize, Serialize};
 
@@ -50,7 +50,7 @@ pub type Marker = (u32, DVec3);
 
 /// What a mesh to be bent keeps in every fit: matrix and right side of smoothness and identity.
 pub struct Fit<'a> {
-    surface: &'a Surface,
+    surface: &'a WeldedSurface,
     /// The surface as it lies before it is bent.
     rest: Vec<DVec3>,
     equations: Equations,
@@ -61,7 +61,7 @@ pub struct Fit<'a> {
 impl<'a> Fit<'a> {
     /// Prepares a surface that lies at `rest` (#N positions) and some markers on it, one at least.
     pub fn new(
-        surface: &'a Surface,
+        surface: &'a WeldedSurface,
         rest: Vec<DVec3>,
         markers: &[Marker],
         fitting: &Fitting,
@@ -137,12 +137,12 @@ impl<'a> Fit<'a> {
 }
 
 /// #F unit normals in the reference pose.
-pub fn face_normals(surface: &Surface) -> Vec<DVec3> {
+pub fn face_normals(surface: &WeldedSurface) -> Vec<DVec3> {
     normals_at(surface, &surface.positions)
 }
 
 /// #F unit normals of the faces at other positions (#N).
-pub fn normals_at(surface: &Surface, positions: &[DVec3]) -> Vec<DVec3> {
+pub fn normals_at(surface: &WeldedSurface, positions: &[DVec3]) -> Vec<DVec3> {
     let normal = |&f: &[u32; 3]| face::double_area_normal(face::corners(positions, f)).normalize_or_zero();
     surface.faces.iter().map(normal).collect()
 }
@@ -150,7 +150,7 @@ pub fn normals_at(surface: &Surface, positions: &[DVec3]) -> Vec<DVec3> {
 /// The terms of smoothness and identity as they are summed. Points of the terms are the places, then the images of the
 /// faces' normals.
 struct Sum<'a> {
-    surface: &'a Surface,
+    surface: &'a WeldedSurface,
     gradients: &'a [Option<Gradient>],
     terms: Terms,
 }

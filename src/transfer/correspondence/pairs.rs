@@ -10,7 +10,7 @@ use super::fit::{face_normals, normals_at};
 use crate::mesh::bvh::Bvh;
 use crate::mesh::{DualGraph, face};
 use crate::segmentation::shortest_paths::{NONE, ShortestPaths};
-use crate::transfer::surface::Surface;
+use crate::transfer::surface::WeldedSurface;
 use glam::DVec3;
 use serde::Serialize;
 
@@ -41,7 +41,7 @@ pub struct Quality {
 impl Correspondence {
     /// Pairs of the faces of `source`, bent to `bent` (#N positions), and `target`, whose faces are in `tree`. Of the
     /// source only faces that are `sound` (#F) are paired.
-    pub fn new(source: &Surface, bent: &[DVec3], sound: &[bool], target: &Surface, tree: &Bvh) -> Self {
+    pub fn new(source: &WeldedSurface, bent: &[DVec3], sound: &[bool], target: &WeldedSurface, tree: &Bvh) -> Self {
         let mut pairs = Vec::with_capacity(source.faces.len() + target.faces.len());
         let (own, other) = (normals_at(source, bent), face_normals(target));
         for (f, middle) in face::centroids(&source.faces, bent).into_iter().enumerate() {
@@ -84,7 +84,7 @@ impl Correspondence {
 }
 
 /// For each face the nearest along the surface that is `covered`, itself if there is none in reach.
-fn holders(target: &Surface, middles: &[DVec3], covered: &[u32]) -> Vec<u32> {
+fn holders(target: &WeldedSurface, middles: &[DVec3], covered: &[u32]) -> Vec<u32> {
     let graph = DualGraph::new(&target.faces);
     let length = |[a, b]: [u32; 2]| middles[a as usize].distance(middles[b as usize]);
     let lengths: Vec<f64> = graph.edges().iter().map(|edge| length(edge.faces)).collect();

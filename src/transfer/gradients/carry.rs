@@ -8,7 +8,7 @@ use crate::linalg::polar::frobenius;
 use crate::mesh::face;
 use crate::transfer::alignment::Alignment;
 use crate::transfer::correspondence::Correspondence;
-use crate::transfer::surface::Surface;
+use crate::transfer::surface::WeldedSurface;
 use glam::{DMat3, DVec3};
 
 /// Poses by which faces are judged that do not fit in with those around them.
@@ -19,11 +19,11 @@ const LEAST: f64 = 1e-3;
 /// A source in motion, a target, and which of their faces correspond.
 pub struct Scene<'a> {
     /// The source.
-    pub source: &'a Surface,
+    pub source: &'a WeldedSurface,
     /// For each of its poses #N positions in the unit ball of the reference.
     pub poses: &'a [Vec<DVec3>],
     /// The target.
-    pub target: &'a Surface,
+    pub target: &'a WeldedSurface,
     /// How the target as a whole lies to the source.
     pub alignment: Alignment,
     /// Which faces correspond.
@@ -93,7 +93,7 @@ pub fn carry(scene: &Scene) -> Result<Vec<Vec<DVec3>>, NotPositiveDefinite> {
 }
 
 /// #F: how far, at most over poses, a face is from what is asked of it (the Frobenius norm within its plane).
-fn misfits(target: &Surface, maps: &[Vec<DMat3>], poses: &[Vec<DVec3>]) -> Vec<f64> {
+fn misfits(target: &WeldedSurface, maps: &[Vec<DMat3>], poses: &[Vec<DVec3>]) -> Vec<f64> {
     let mut worst = vec![0.0_f64; target.faces.len()];
     let gradients = gradients(target);
     for (maps, pose) in maps.iter().zip(poses) {

@@ -14,7 +14,7 @@ use crate::transfer::correspondence::fit::Marker;
 use crate::transfer::correspondence::{Correspondence, Fit, Quality};
 use crate::transfer::posed::{Posture, posture};
 use crate::transfer::propose::{Proposer, guides};
-use crate::transfer::surface::Surface;
+use crate::transfer::surface::WeldedSurface;
 use crate::transfer::{Method, Pair, Parameters, TransferError};
 use crate::warning::Warning;
 use glam::DVec3;
@@ -28,8 +28,8 @@ const TURNS: usize = 3;
 /// A source in motion and a target.
 pub struct Mover {
     parameters: Parameters,
-    source: Surface,
-    target: Surface,
+    source: WeldedSurface,
+    target: WeldedSurface,
     poses: Vec<Vec<DVec3>>,
     /// Who gives hints, if anybody does.
     proposer: Option<Arc<Proposer>>,
@@ -250,8 +250,8 @@ impl Mover {
     }
 
     /// #V positions in the target's units of the given vertices of a surface, of #N in the target's unit ball.
-    fn outward(&self, surface: &Surface, positions: &[DVec3]) -> Vec<DVec3> {
-        let Surface { centre, radius, .. } = self.target;
+    fn outward(&self, surface: &WeldedSurface, positions: &[DVec3]) -> Vec<DVec3> {
+        let WeldedSurface { centre, radius, .. } = self.target;
         surface.place.iter().map(|&place| radius * positions[place as usize] + centre).collect()
     }
 }
@@ -265,7 +265,11 @@ fn degenerate_source(_: NotPositiveDefinite) -> TransferError {
 }
 
 /// #F part numbers of the faces of a sequence's surface, by the segmentation.
-fn parts_of(source: &Sequence, surface: &Surface, observer: &mut dyn Observer) -> Result<Vec<u32>, TransferError> {
+fn parts_of(
+    source: &Sequence,
+    surface: &WeldedSurface,
+    observer: &mut dyn Observer,
+) -> Result<Vec<u32>, TransferError> {
     let parts = segmentation::segment(source, &segmentation::Parameters::default(), observer);
     let labels = match parts {
         Ok(parts) => parts.labels,

@@ -8,7 +8,7 @@
 
 use crate::linalg::outer::outer;
 use crate::mesh::face;
-use crate::transfer::surface::Surface;
+use crate::transfer::surface::WeldedSurface;
 use glam::{DMat3, DVec3};
 
 /// A face whose height is below this share of its longest edge has no gradient.
@@ -50,13 +50,13 @@ impl Gradient {
 }
 
 /// #F gradients of a surface in its reference pose.
-pub fn gradients(surface: &Surface) -> Vec<Option<Gradient>> {
+pub fn gradients(surface: &WeldedSurface) -> Vec<Option<Gradient>> {
     surface.faces.iter().map(|&f| Gradient::new(face::corners(&surface.positions, f))).collect()
 }
 
 /// #F linear parts of the maps from the reference to a pose (#N positions). Across the face it stretches by the root of the
 /// area's growth, as the fourth vertex of §3.1 does. `None` for faces without a gradient.
-pub fn deformations(surface: &Surface, gradients: &[Option<Gradient>], pose: &[DVec3]) -> Vec<Option<DMat3>> {
+pub fn deformations(surface: &WeldedSurface, gradients: &[Option<Gradient>], pose: &[DVec3]) -> Vec<Option<DMat3>> {
     let of_face = |(&face, gradient): (&[u32; 3], &Option<Gradient>)| {
         let gradient = gradient.as_ref()?;
         let before = face::double_area_normal(face::corners(&surface.positions, face)).length();

@@ -9,14 +9,14 @@ use super::operator::{Gradient, gradients};
 use crate::linalg::cholesky::{Cholesky, NotPositiveDefinite};
 use crate::mesh::near::bridges;
 use crate::mesh::{DualGraph, face};
-use crate::transfer::surface::Surface;
+use crate::transfer::surface::WeldedSurface;
 use glam::{DMat3, DVec3};
 
 /// Poses that are solved at once: enough to read the factor seldom, few enough to stay in memory.
 const AT_ONCE: usize = 16;
 
 /// Pairs of faces over which the pieces of a surface, each as its edges connect it, hang together as one.
-pub fn bridging(surface: &Surface, graph: &DualGraph) -> Vec<[u32; 2]> {
+pub fn bridging(surface: &WeldedSurface, graph: &DualGraph) -> Vec<[u32; 2]> {
     bridges(graph, &face::centroids(&surface.faces, &surface.positions))
 }
 
@@ -48,7 +48,7 @@ impl Solver {
     ///
     /// Pieces that do not touch are tied, each to the nearest, as the maps of the two faces there say. Faces without area
     /// keep their edges as their map says.
-    pub fn new(surface: &Surface, weights: &[f64], pins: &[u32]) -> Result<Self, NotPositiveDefinite> {
+    pub fn new(surface: &WeldedSurface, weights: &[f64], pins: &[u32]) -> Result<Self, NotPositiveDefinite> {
         let gradients = gradients(surface);
         let mut sum =
             Sum { surface, terms: Terms::new(surface.len(), &[]), loads: Vec::with_capacity(3 * weights.len()) };
@@ -159,7 +159,7 @@ impl Solver {
 
 /// The system as it is summed.
 struct Sum<'a> {
-    surface: &'a Surface,
+    surface: &'a WeldedSurface,
     terms: Terms,
     loads: Vec<Load>,
 }

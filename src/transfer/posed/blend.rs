@@ -3,7 +3,7 @@
 use crate::linalg::cholesky::{Cholesky, NotPositiveDefinite};
 use crate::linalg::polar;
 use crate::mesh::laplacian::Laplacian;
-use crate::transfer::surface::Surface;
+use crate::transfer::surface::WeldedSurface;
 use glam::DMat3;
 
 /// How far the rotation of one part reaches into the next, in radii of the mesh.
@@ -13,7 +13,7 @@ const LEAST_COTANGENT: f64 = 0.01;
 
 /// #N × `count` shares of the parts at the places of a surface, which sum to 1 in each row: the parts themselves (#F
 /// numbers below `count`), diffused as heat is.
-pub fn shares(surface: &Surface, labels: &[u32], count: usize) -> Result<Vec<f64>, NotPositiveDefinite> {
+pub fn shares(surface: &WeldedSurface, labels: &[u32], count: usize) -> Result<Vec<f64>, NotPositiveDefinite> {
     let n = surface.len();
     let laplacian = Laplacian::new(&surface.faces, &surface.positions);
     // The places' areas sum to that of the surface, as lengths are those of the Laplacian.
@@ -44,7 +44,7 @@ pub fn shares(surface: &Surface, labels: &[u32], count: usize) -> Result<Vec<f64
 }
 
 /// #F rotations: those of the parts, blended by the shares of a face's corners.
-pub fn blended(surface: &Surface, shares: &[f64], rotations: &[DMat3]) -> Vec<DMat3> {
+pub fn blended(surface: &WeldedSurface, shares: &[f64], rotations: &[DMat3]) -> Vec<DMat3> {
     let count = rotations.len();
     let of_face = |corners: &[u32; 3]| {
         let mut sum = DMat3::ZERO;

@@ -15,7 +15,7 @@ use super::alignment::Alignment;
 use super::correspondence::Correspondence;
 use super::correspondence::fit::{face_normals, normals_at};
 use super::gradients::solver::Solver;
-use super::surface::Surface;
+use super::surface::WeldedSurface;
 use crate::linalg::cholesky::NotPositiveDefinite;
 use crate::linalg::outer::outer;
 use crate::linalg::rigid_fit::best_rotation;
@@ -40,16 +40,16 @@ pub struct Posture {
 
 impl Posture {
     /// The target as it is.
-    pub fn unturned(target: &Surface) -> Self {
+    pub fn unturned(target: &WeldedSurface) -> Self {
         Self { turns: Vec::new(), positions: target.positions.clone(), parts: 0 }
     }
 }
 
 /// Finds the posture of the source's reference for the target. `parts` are #F numbers of the source's faces.
 pub fn posture(
-    source: &Surface,
+    source: &WeldedSurface,
     parts: &[u32],
-    target: &Surface,
+    target: &WeldedSurface,
     correspondence: &Correspondence,
     alignment: Alignment,
 ) -> Result<Posture, NotPositiveDefinite> {
@@ -69,7 +69,7 @@ pub fn posture(
 }
 
 /// #F parts of the target's faces: that of most of their partners.
-fn labels(parts: &[u32], target: &Surface, correspondence: &Correspondence) -> Vec<u32> {
+fn labels(parts: &[u32], target: &WeldedSurface, correspondence: &Correspondence) -> Vec<u32> {
     let mut labels = vec![0; target.faces.len()];
     for of_face in correspondence.pairs.chunk_by(|a, b| a[0] == b[0]) {
         let mut found: Vec<u32> = of_face.iter().map(|pair| parts[pair[1] as usize]).collect();
@@ -82,9 +82,9 @@ fn labels(parts: &[u32], target: &Surface, correspondence: &Correspondence) -> V
 
 /// For each part the rotation that turns its normals, and its positions about its middle, onto those of its twin.
 fn rotations(
-    source: &Surface,
+    source: &WeldedSurface,
     aligned: &[DVec3],
-    target: &Surface,
+    target: &WeldedSurface,
     correspondence: &Correspondence,
     labels: &[u32],
     count: usize,
@@ -125,7 +125,7 @@ fn rotations(
 }
 
 /// Moves the turned target so that what hardly turned stays where it was.
-fn stay(target: &Surface, turns: &[DMat3], areas: &[f64], positions: &mut [DVec3]) {
+fn stay(target: &WeldedSurface, turns: &[DMat3], areas: &[f64], positions: &mut [DVec3]) {
     let (mut off, mut total) = (DVec3::ZERO, 0.0);
     for ((corners, turn), area) in target.faces.iter().zip(turns).zip(areas) {
         let cosine = 0.5 * (turn.x_axis.x + turn.y_axis.y + turn.z_axis.z - 1.0);

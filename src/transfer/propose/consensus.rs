@@ -7,8 +7,8 @@
 //! Distances to what is near are right even where proportions differ, and a similarity of what is near follows a limb
 //! that is held another way.
 
+use super::sampled::SampledSurface;
 use super::similarity::Similarity;
-use super::surface::Surface;
 use glam::DVec3;
 
 /// Points that each point listens to.
@@ -66,7 +66,7 @@ pub const LAST: Rules = Rules { reach: 0.1, place: 0.75, facing: 0.04 };
 
 /// The points, where they are now, and what they think of it.
 pub struct Consensus<'a> {
-    target: &'a Surface,
+    target: &'a SampledSurface,
     /// Only the first so many samples of the target are considered.
     considered: usize,
     points: &'a [Point],
@@ -95,7 +95,7 @@ pub struct Voice {
 impl<'a> Consensus<'a> {
     /// Starts with places (#points); given ones are put in.
     pub fn new(
-        target: &'a Surface,
+        target: &'a SampledSurface,
         considered: usize,
         points: &'a [Point],
         distances: &'a [f32],

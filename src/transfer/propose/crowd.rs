@@ -1,7 +1,7 @@
 //! Points of one figure that look for their places on the other together: a spread of its samples, and those asked for.
 
 use super::consensus::{Consensus, LAST, Point, Rules, Target};
-use super::surface::Surface;
+use super::sampled::SampledSurface;
 
 /// Samples of the source that look for their places beside the points asked for: in the first rounds, and in the last.
 pub const COMPANY: [usize; 2] = [60, 120];
@@ -19,9 +19,9 @@ const GIVEN: f64 = 3.0;
 #[derive(Clone, Copy)]
 pub struct Figures<'a> {
     /// Whose points look for places.
-    pub source: &'a Surface,
+    pub source: &'a SampledSurface,
     /// Where they look.
-    pub target: &'a Surface,
+    pub target: &'a SampledSurface,
 }
 
 /// Points of the source that look for their places together.

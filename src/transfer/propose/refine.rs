@@ -5,12 +5,12 @@
 //! on another is decided there by the surfaces themselves.
 
 use super::consensus::Consensus;
-use super::surface::Surface;
+use super::sampled::SampledSurface;
 use crate::mesh::kd_tree::KdTree;
 use crate::sequence::Sequence;
-use crate::transfer::registration::{Effort, Ground, Known, Pin, Registration};
+use crate::transfer::registration::{ClosestPoints, Effort, Known, Pin, Registration};
 use crate::transfer::spline::Spline;
-use crate::transfer::surface::Surface as Shape;
+use crate::transfer::surface::WeldedSurface;
 use glam::DVec3;
 
 /// Points that say where the target lies.
@@ -28,23 +28,23 @@ const FAR: f64 = 0.08;
 
 /// Both surfaces on their samples, ready to be laid on each other.
 pub struct Refiner {
-    source: Shape,
-    ground: Ground,
-    target: Shape,
+    source: WeldedSurface,
+    closest: ClosestPoints,
+    target: WeldedSurface,
     registration: Registration,
 }
 
 impl Refiner {
     /// `None` where one of the surfaces is no surface.
-    pub fn new(source: &Surface, target: &Surface) -> Option<Self> {
+    pub fn new(source: &SampledSurface, target: &SampledSurface) -> Option<Self> {
         let [source, target] = [source, target].map(|surface| {
             let sequence = Sequence::new("", surface.coarse.clone(), surface.places.clone(), Vec::new()).ok()?;
-            let shape = Shape::new(&sequence);
+            let shape = WeldedSurface::new(&sequence);
             (!shape.is_empty() && shape.radius > 0.0 && shape.positions.iter().all(|p| p.is_finite())).then_some(shape)
         });
         let (source, target) = (source?, target?.tied());
         let registration = Registration::new(&target).ok()?;
-        Some(Self { ground: Ground::new(&source), source, target, registration })
+        Some(Self { closest: ClosestPoints::new(&source), source, target, registration })
     }
 
     /// The samples of the target where they come to lie on the source, in the source's lengths.
@@ -64,7 +64,7 @@ impl Refiner {
             .collect();
         let known = Known { pins: &pins, hints: &[] };
         let bent =
-            self.registration.bend((&self.source, &self.ground), &self.target, &shape, start, known, Effort::Once);
+            self.registration.bend((&self.source, &self.closest), &self.target, &shape, start, known, Effort::Once);
         let outward = |p: DVec3| p * self.source.radius + self.source.centre;
         (0..places.len()).map(|s| bent.get(self.target.place[s] as usize).map_or(places[s], |&p| outward(p))).collect()
     }
@@ -72,7 +72,7 @@ impl Refiner {
 
 /// The bent target as something on which to find points of the source.
 pub struct Found<'a> {
-    target: &'a Surface,
+    target: &'a SampledSurface,
     bent: Vec<DVec3>,
     normals: Vec<DVec3>,
     tree: KdTree<6>,
@@ -80,7 +80,7 @@ pub struct Found<'a> {
 
 impl<'a> Found<'a> {
     /// `bent` are the places of the target's samples on the source.
-    pub fn new(target: &'a Surface, bent: Vec<DVec3>) -> Self {
+    pub fn new(target: &'a SampledSurface, bent: Vec<DVec3>) -> Self {
         let mut normals = vec![DVec3::ZERO; bent.len()];
         for face in &target.coarse {
             let [a, b, c] = face.map(|s| bent[s as usize]);

@@ -6,9 +6,9 @@
 
 use super::consensus::{Consensus, LAST, Rules};
 use super::crowd::{COMPANY, CONSIDERED, Crowd, Figures};
+use super::sampled::SampledSurface;
 use super::similarity::Similarity;
 use super::starts::{Pair, Places, TELLING, laid, starts};
-use super::surface::Surface;
 use super::ways::{Way, half_turns};
 use crate::transfer::alignment::axis_turns;
 use glam::DMat3;
@@ -132,7 +132,7 @@ fn rules(reach: f64, place: f64) -> Rules {
     Rules { reach, place, ..LAST }
 }
 
-fn run(target: &Surface, crowd: &Crowd, start: Places, schedule: &[Rules]) -> End {
+fn run(target: &SampledSurface, crowd: &Crowd, start: Places, schedule: &[Rules]) -> End {
     let mut consensus = Consensus::new(target, CONSIDERED, &crowd.points, &crowd.distances, start);
     schedule.iter().for_each(|rules| consensus.round(rules));
     let badness = consensus.badness();

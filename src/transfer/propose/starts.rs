@@ -2,7 +2,7 @@
 
 use super::consensus::Point;
 use super::crowd::{CONSIDERED, Crowd, Figures};
-use super::surface::Surface;
+use super::sampled::SampledSurface;
 use super::tips;
 use super::ways::Way;
 use glam::{DMat3, DVec3};
@@ -64,7 +64,7 @@ pub fn starts(figures: Figures, crowd: &Crowd, way: Way, given: &[Pair]) -> Vec<
 }
 
 /// For each point, the considered sample of the target nearest to where a map puts it, that faces the same way.
-pub fn laid(target: &Surface, crowd: &Crowd, map: &dyn Fn(DVec3) -> DVec3, turn: DMat3) -> Places {
+pub fn laid(target: &SampledSurface, crowd: &Crowd, map: &dyn Fn(DVec3) -> DVec3, turn: DMat3) -> Places {
     let considered = CONSIDERED.min(target.len());
     let nearest = |point: &Point| {
         let (place, normal) = (map(point.place), (turn * point.normal).normalize_or_zero());

@@ -6,7 +6,7 @@
 //! each other are partners ([`met`]).
 
 use super::crowd::Crowd;
-use super::surface::Surface;
+use super::sampled::SampledSurface;
 use glam::{DMat3, DVec3};
 
 /// Within this distance (a share of the diagonal) a tip is the farthest.
@@ -25,7 +25,7 @@ const BEAM: usize = 64;
 const ALONE: f64 = 0.03;
 
 /// Samples among the first `among` that are tips, in the order of the samples.
-pub fn tips(surface: &Surface, among: usize) -> Vec<u32> {
+pub fn tips(surface: &SampledSurface, among: usize) -> Vec<u32> {
     let among = among.min(surface.len());
     let far = |s: u32| surface.row(s)[..among].iter().sum::<f32>();
     let far: Vec<f32> = (0..among as u32).map(far).collect();
@@ -42,7 +42,13 @@ pub fn tips(surface: &Surface, among: usize) -> Vec<u32> {
 ///
 /// `map` lays the source over the target; a squared distance between places costs `by_place`, where one of distances along
 /// the surface costs one. Returns (member of the crowd, sample of the target).
-pub fn assign(source: &Surface, target: &Surface, crowd: &Crowd, map: DMat3, by_place: f64) -> Vec<(u32, u32)> {
+pub fn assign(
+    source: &SampledSurface,
+    target: &SampledSurface,
+    crowd: &Crowd,
+    map: DMat3,
+    by_place: f64,
+) -> Vec<(u32, u32)> {
     let (own, others) = (tips(source, crowd.company), tips(target, crowd.company));
     let n = crowd.points.len();
     let row = |i: u32| &crowd.distances[i as usize * n..(i as usize + 1) * n];
@@ -75,7 +81,7 @@ pub fn assign(source: &Surface, target: &Surface, crowd: &Crowd, map: DMat3, by_
 /// Tips of both whose places have come to lie nearest to each other's, `at` (#crowd) being where the crowd is.
 ///
 /// Returns (member of the crowd's company, sample of the target).
-pub fn met(source: &Surface, target: &Surface, company: usize, at: &[Option<u32>]) -> Vec<(u32, u32)> {
+pub fn met(source: &SampledSurface, target: &SampledSurface, company: usize, at: &[Option<u32>]) -> Vec<(u32, u32)> {
     let own: Vec<(u32, u32)> =
         tips(source, company).into_iter().filter_map(|tip| Some((tip, at[tip as usize]?))).collect();
     let others = tips(target, company);

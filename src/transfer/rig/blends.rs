@@ -2,7 +2,7 @@
 
 use super::weights::Row;
 use crate::mesh::face;
-use crate::transfer::surface::Surface;
+use crate::transfer::surface::WeldedSurface;
 use glam::DVec3;
 use std::collections::BTreeMap;
 
@@ -38,7 +38,7 @@ impl Blend {
 pub type Blends = BTreeMap<(u32, u32), Blend>;
 
 /// The blends of `bones` bones; `rows` are their shares at the vertices of a surface, between which they are linear.
-pub fn blends(surface: &Surface, rows: &[Row], bones: usize) -> Blends {
+pub fn blends(surface: &WeldedSurface, rows: &[Row], bones: usize) -> Blends {
     // A bone meets few others.
     let mut met: Vec<Vec<(u32, Blend)>> = vec![Vec::new(); bones];
     let areas = face::areas(&surface.faces, &surface.positions);
@@ -85,7 +85,7 @@ mod tests {
     fn blends_are_integrals_over_the_faces() {
         let corners = vec![DVec3::ZERO, DVec3::X, DVec3::Y];
         let triangle = Sequence::new("triangle", vec![[0, 1, 2]], corners, Vec::new()).expect("a triangle");
-        let surface = Surface::new(&triangle);
+        let surface = WeldedSurface::new(&triangle);
         let found = blends(&surface, &[vec![(0, 1.0)], vec![(1, 1.0)], vec![(1, 1.0)]], 2);
         // λ₀ (λ₁ + λ₂) has the mean 2/12, and its middle at 2/5, 3/10, 3/10.
         let both = found[&(0, 1)];

@@ -2,7 +2,7 @@
 
 use crate::linalg::rigid_fit::{Moments, RigidMotion};
 use crate::poses::spread;
-use crate::transfer::surface::Surface;
+use crate::transfer::surface::WeldedSurface;
 use glam::DVec3;
 
 /// Poses that are looked at, the most different ones.
@@ -32,14 +32,14 @@ pub struct Bones {
 }
 
 /// Up to `POSES` poses that differ most from the reference and from each other, in ascending order.
-pub fn telling_poses(surface: &Surface, poses: &[Vec<DVec3>]) -> Vec<usize> {
+pub fn telling_poses(surface: &WeldedSurface, poses: &[Vec<DVec3>]) -> Vec<usize> {
     let step = surface.len().div_ceil(COMPARED).max(1);
     let compared: Vec<usize> = (0..surface.len()).step_by(step).collect();
     spread(&surface.positions, poses, &compared, POSES, 0.0)
 }
 
 /// Finds bones; at least one for a surface with vertices.
-pub fn find(surface: &Surface, poses: &[&[DVec3]], most: usize) -> Bones {
+pub fn find(surface: &WeldedSurface, poses: &[&[DVec3]], most: usize) -> Bones {
     let step = surface.len().div_ceil(SAMPLES).max(1);
     let samples: Vec<usize> = (0..surface.len()).step_by(step).collect();
     let mut of = vec![0; samples.len()];
@@ -66,7 +66,13 @@ pub fn find(surface: &Surface, poses: &[&[DVec3]], most: usize) -> Bones {
 }
 
 /// For each bone its motion in each pose.
-fn fit(surface: &Surface, poses: &[&[DVec3]], samples: &[usize], of: &[u32], count: usize) -> Vec<Vec<RigidMotion>> {
+fn fit(
+    surface: &WeldedSurface,
+    poses: &[&[DVec3]],
+    samples: &[usize],
+    of: &[u32],
+    count: usize,
+) -> Vec<Vec<RigidMotion>> {
     let mut moments = vec![vec![Moments::default(); poses.len()]; count];
     for (&v, &bone) in samples.iter().zip(of) {
         for (moments, pose) in moments[bone as usize].iter_mut().zip(poses) {
@@ -77,7 +83,7 @@ fn fit(surface: &Surface, poses: &[&[DVec3]], samples: &[usize], of: &[u32], cou
 }
 
 /// The motion of some vertices in each pose.
-fn moved(surface: &Surface, poses: &[&[DVec3]], members: &[usize]) -> Vec<RigidMotion> {
+fn moved(surface: &WeldedSurface, poses: &[&[DVec3]], members: &[usize]) -> Vec<RigidMotion> {
     let moments = |pose: &&[DVec3]| {
         let mut moments = Moments::default();
         members.iter().for_each(|&v| moments.add(surface.mass[v], surface.positions[v], pose[v]));
@@ -87,20 +93,20 @@ fn moved(surface: &Surface, poses: &[&[DVec3]], members: &[usize]) -> Vec<RigidM
 }
 
 /// Sum over the poses of the squared distance of a vertex from where a bone puts it.
-fn unlike(surface: &Surface, poses: &[&[DVec3]], bone: &[RigidMotion], v: usize) -> f64 {
+fn unlike(surface: &WeldedSurface, poses: &[&[DVec3]], bone: &[RigidMotion], v: usize) -> f64 {
     let p = surface.positions[v];
     bone.iter().zip(poses).map(|(motion, pose)| motion.apply(p).distance_squared(pose[v])).sum()
 }
 
 /// The bone that explains a vertex best, and how badly.
-fn best(surface: &Surface, poses: &[&[DVec3]], motions: &[Vec<RigidMotion>], v: usize) -> (u32, f64) {
+fn best(surface: &WeldedSurface, poses: &[&[DVec3]], motions: &[Vec<RigidMotion>], v: usize) -> (u32, f64) {
     let all = motions.iter().zip(0_u32..).map(|(bone, i)| (i, unlike(surface, poses, bone, v)));
     all.reduce(|best, next| if next.1 < best.1 { next } else { best }).unwrap_or((0, 0.0))
 }
 
 /// Vertices on which to found new bones: in the bones that are worst off, around the vertex that is worst off.
 fn founders(
-    surface: &Surface,
+    surface: &WeldedSurface,
     poses: &[&[DVec3]],
     samples: &[usize],
     of: &[u32],
@@ -146,7 +152,7 @@ fn founders(
 
 /// Makes every bone one patch of the surface: a patch apart from the rest becomes a bone of its own, or goes to the bone
 /// around it if it is small. What lies on several connected pieces of the mesh stays one bone.
-fn patches(surface: &Surface, of: &[u32]) -> (Vec<u32>, usize) {
+fn patches(surface: &WeldedSurface, of: &[u32]) -> (Vec<u32>, usize) {
     let mut of = of.to_vec();
     for _ in 0..10 {
         let (patch, count) = components(surface, |a, b| of[a] == of[b]);
@@ -181,7 +187,7 @@ fn patches(surface: &Surface, of: &[u32]) -> (Vec<u32>, usize) {
 }
 
 /// Gives the patches of a bone that lie on one piece of the mesh numbers of their own.
-fn apart(surface: &Surface, of: &[u32]) -> (Vec<u32>, usize) {
+fn apart(surface: &WeldedSurface, of: &[u32]) -> (Vec<u32>, usize) {
     let (patch, _) = components(surface, |a, b| of[a] == of[b]);
     let (piece, _) = components(surface, |_, _| true);
     // The patches of each bone and piece, by area; the largest of each piece are the bone itself.
@@ -203,7 +209,7 @@ fn apart(surface: &Surface, of: &[u32]) -> (Vec<u32>, usize) {
 }
 
 /// Connected components of the vertices over edges that join, and their number.
-fn components(surface: &Surface, joined: impl Fn(usize, usize) -> bool) -> (Vec<u32>, usize) {
+fn components(surface: &WeldedSurface, joined: impl Fn(usize, usize) -> bool) -> (Vec<u32>, usize) {
     let mut component = vec![u32::MAX; surface.len()];
     let mut count = 0;
     let mut stack = Vec::new();

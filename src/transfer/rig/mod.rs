@@ -9,11 +9,11 @@ pub mod bones;
 pub mod motions;
 pub mod weights;
 
-use super::surface::Surface;
+use super::surface::WeldedSurface;
 use glam::{DAffine3, DVec3};
 use weights::Row;
 
-/// A skin of a [`Surface`], in its unit ball.
+/// A skin of a [`WeldedSurface`], in its unit ball.
 #[derive(Clone, Debug, Default)]
 pub struct Rig {
     /// The number of bones.
@@ -34,7 +34,7 @@ pub struct Rig {
 impl Rig {
     /// Finds at most `most` bones that explain the poses (positions in the unit ball, as the surface's) and binds the
     /// surface to them.
-    pub fn new(surface: &Surface, poses: &[Vec<DVec3>], most: usize) -> Self {
+    pub fn new(surface: &WeldedSurface, poses: &[Vec<DVec3>], most: usize) -> Self {
         let chosen = bones::telling_poses(surface, poses);
         let seen: Vec<&[DVec3]> = chosen.iter().map(|&p| poses[p].as_slice()).collect();
         let found = bones::find(surface, &seen, most);
@@ -48,7 +48,7 @@ impl Rig {
     }
 
     /// The motion of each bone in another pose, #N positions in the unit ball of the surface that the rig was made of.
-    pub fn follow(&self, surface: &Surface, pose: &[DVec3]) -> Vec<DAffine3> {
+    pub fn follow(&self, surface: &WeldedSurface, pose: &[DVec3]) -> Vec<DAffine3> {
         self.motions.fit(surface, pose)
     }
 }
@@ -58,7 +58,7 @@ pub fn blend(row: &[(u32, f64)], maps: &[DAffine3], point: DVec3) -> DVec3 {
     row.iter().filter_map(|&(bone, w)| Some(w * maps.get(bone as usize)?.transform_point3(point))).sum()
 }
 
-fn deviation(surface: &Surface, rows: &[Row], pose: &[DVec3], maps: &[DAffine3]) -> f64 {
+fn deviation(surface: &WeldedSurface, rows: &[Row], pose: &[DVec3], maps: &[DAffine3]) -> f64 {
     let at = surface.positions.iter().zip(rows).map(|(&p, row)| blend(row, maps, p));
     at.zip(pose).zip(&surface.mass).map(|((a, b), m)| m * a.distance(*b)).sum()
 }

@@ -3,7 +3,7 @@
 use super::weights::Row;
 use crate::linalg::polar::frobenius;
 use crate::linalg::rigid_fit::Moments;
-use crate::transfer::surface::Surface;
+use crate::transfer::surface::WeldedSurface;
 use glam::{DAffine3, DMat3, DVec3};
 use nalgebra::{Cholesky, DMatrix, Dyn};
 
@@ -30,7 +30,7 @@ pub struct Motions {
 
 impl Motions {
     /// Prepares the weights of a surface.
-    pub fn new(surface: &Surface, rows: &[Row], bones: usize) -> Self {
+    pub fn new(surface: &WeldedSurface, rows: &[Row], bones: usize) -> Self {
         let mut system = DMatrix::zeros(bones, bones);
         let mut hold = vec![1e-12; bones];
         for (row, m) in rows.iter().zip(&surface.mass) {
@@ -45,7 +45,7 @@ impl Motions {
     }
 
     /// The motion of each bone that carries the surface best to #N other positions.
-    pub fn fit(&self, surface: &Surface, pose: &[DVec3]) -> Vec<DAffine3> {
+    pub fn fit(&self, surface: &WeldedSurface, pose: &[DVec3]) -> Vec<DAffine3> {
         let mut moments = vec![Moments::default(); self.bones];
         for (v, row) in self.rows.iter().enumerate() {
             for &(bone, share) in row {
@@ -73,7 +73,7 @@ impl Motions {
     }
 
     /// Given the rotations, the translations that carry the blended surface best.
-    fn translations(&self, surface: &Surface, pose: &[DVec3], maps: &mut [DAffine3]) {
+    fn translations(&self, surface: &WeldedSurface, pose: &[DVec3], maps: &mut [DAffine3]) {
         let Some(system) = &self.system else { return };
         let mut side = DMatrix::zeros(self.bones, 3);
         for (i, map) in maps.iter().enumerate() {

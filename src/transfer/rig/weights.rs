@@ -2,7 +2,7 @@
 //! neighbours' where the poses say little.
 
 use super::bones::Bones;
-use crate::transfer::surface::Surface;
+use crate::transfer::surface::WeldedSurface;
 use glam::DVec3;
 
 /// Bones and their shares at a vertex.
@@ -22,7 +22,7 @@ const BESIDE: f64 = 0.5;
 pub const LEAST: f64 = 1e-4;
 
 /// #N rows of bones and their shares.
-pub fn bind(surface: &Surface, poses: &[&[DVec3]], bones: &Bones) -> Vec<Row> {
+pub fn bind(surface: &WeldedSurface, poses: &[&[DVec3]], bones: &Bones) -> Vec<Row> {
     let hard = bones.of.iter().map(|&bone| vec![(bone, 1.0)]).collect();
     let mut rows = averaged(surface, hard, CANDIDATES, SOFTEN);
     let reach = reach(surface, bones);
@@ -34,7 +34,7 @@ pub fn bind(surface: &Surface, poses: &[&[DVec3]], bones: &Bones) -> Vec<Row> {
 }
 
 /// For each bone itself and the bones that it borders on.
-fn reach(surface: &Surface, bones: &Bones) -> Vec<Vec<u32>> {
+fn reach(surface: &WeldedSurface, bones: &Bones) -> Vec<Vec<u32>> {
     let mut reach: Vec<std::collections::BTreeSet<u32>> = (0..bones.count as u32).map(|b| [b].into()).collect();
     for v in 0..surface.len() {
         for &u in surface.neighbours(v) {
@@ -45,7 +45,7 @@ fn reach(surface: &Surface, bones: &Bones) -> Vec<Vec<u32>> {
 }
 
 fn vertex(
-    surface: &Surface,
+    surface: &WeldedSurface,
     poses: &[&[DVec3]],
     bones: &Bones,
     reach: &[Vec<u32>],
@@ -107,7 +107,7 @@ fn simplex(gram: &[[f64; CANDIDATES]], pull: &[f64]) -> Vec<f64> {
 
 /// Rows half their own, half their neighbours' mean, some rounds over; at most `most` entries each. In a part of a round
 /// neighbours have that part of their share.
-pub fn averaged(surface: &Surface, rows: Vec<Row>, most: usize, rounds: f64) -> Vec<Row> {
+pub fn averaged(surface: &WeldedSurface, rows: Vec<Row>, most: usize, rounds: f64) -> Vec<Row> {
     let (mut rows, mut next) = (rows, vec![Row::new(); surface.len()]);
     let mut left = rounds;
     while left > 0.0 {
@@ -138,7 +138,7 @@ impl Default for Averager {
 
 impl Averager {
     /// Makes `average` one of the rows of [`averaged`], after one round.
-    pub fn average(&mut self, surface: &Surface, rows: &[Row], v: usize, most: usize, average: &mut Row) {
+    pub fn average(&mut self, surface: &WeldedSurface, rows: &[Row], v: usize, most: usize, average: &mut Row) {
         let neighbours = surface.neighbours(v);
         self.sum.clear();
         self.add(&rows[v], if neighbours.is_empty() { 1.0 } else { 1.0 - self.beside });

@@ -31,7 +31,7 @@ const TYPICAL: f64 = 0.4;
 /// A sampled surface. Places are relative to the centre of the bounding box. Lengths are such that the mean distance along
 /// the surface is [`TYPICAL`]: unlike the box, that does not depend on how limbs are held.
 #[derive(Clone, Debug)]
-pub struct Surface {
+pub struct SampledSurface {
     /// #V places of the mesh's own vertices.
     pub points: Vec<DVec3>,
     /// #V directions of the surface at the vertices (length one or zero).
@@ -61,7 +61,7 @@ pub struct Surface {
 /// A place as a mean of samples with weights that add up to one.
 pub type Reading = [(u32, f32); 3];
 
-impl Surface {
+impl SampledSurface {
     /// `faces` is #F triples of vertex numbers, `positions` #V points. Faces with vertices out of range or named twice
     /// are left out. `None` without a vertex.
     pub fn new(faces: &[[u32; 3]], positions: &[DVec3], samples: usize) -> Option<Self> {
@@ -332,7 +332,7 @@ mod tests {
             points.extend([DVec3::new(0.1 * f64::from(i), 0.0, -1.0), DVec3::new(0.1 * f64::from(i), 0.0, 5.0)]);
         }
         faces.extend((0..398).map(|i| [first + i, first + i + 1, first + i + 2]));
-        let surface = Surface::new(&faces, &points, 100).expect("a surface");
+        let surface = SampledSurface::new(&faces, &points, 100).expect("a surface");
         assert_eq!(surface.len(), 100);
         assert!(surface.samples.iter().all(|&v| v >= first));
         assert!(surface.cell.iter().all(|&cell| cell < 100));
