@@ -33,7 +33,7 @@ const INFLUENCES: usize = 8;
 const ROUGH: f64 = 0.02;
 
 /// The source's bones and what finds the target on the source.
-pub struct Bones {
+pub struct BoneTransfer {
     rig: Rig,
     /// How many times as large as at rest the source is in each pose; the bones do not know of that.
     growths: Vec<f64>,
@@ -44,7 +44,7 @@ pub struct Bones {
     joints: Option<Joints>,
 }
 
-impl Bones {
+impl BoneTransfer {
     /// Takes the source apart into `most` bones at most, and prepares the target to be bent onto it. If there is no
     /// `proposer` for these two, one is made.
     pub fn new(

@@ -12,7 +12,7 @@ use crate::weights::{self, Biharmonic, Weights};
 use glam::{DAffine3, DVec3};
 
 /// The factored systems of both meshes' weights.
-pub struct KeyPoints {
+pub struct KeyPointTransfer {
     method: Method,
     /// Of the source, in its unit ball.
     poses: Vec<Vec<DVec3>>,
@@ -32,7 +32,7 @@ struct Carrier {
     alignment: Alignment,
 }
 
-impl KeyPoints {
+impl KeyPointTransfer {
     /// Factors the systems.
     pub fn new(
         (source, target): (&Sequence, &Sequence),

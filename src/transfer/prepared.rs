@@ -1,8 +1,8 @@
 //! The transfer between one source and one target, ready for any pairs.
 
 use super::alignment::align;
-use super::by_bones::Bones;
-use super::by_key_points::KeyPoints;
+use super::by_bones::BoneTransfer;
+use super::by_key_points::KeyPointTransfer;
 use super::checked::{checked, surfaces};
 use super::propose::Proposer;
 use super::surface::WeldedSurface;
@@ -24,8 +24,8 @@ pub struct Prepared {
 
 /// What handles the target has.
 enum Family {
-    Bones(Box<Bones>),
-    KeyPoints(Box<KeyPoints>),
+    Bones(Box<BoneTransfer>),
+    KeyPoints(Box<KeyPointTransfer>),
 }
 
 impl Prepared {
@@ -54,10 +54,10 @@ impl Prepared {
         let [here, there] = surfaces(sequences.0, target)?;
         steps.end("surfaces", 0.1)?;
         let family = if parameters.method.by_bones() {
-            let bones = Bones::new(sequences, (&here, &there), parameters.bones, proposer, &mut steps)?;
+            let bones = BoneTransfer::new(sequences, (&here, &there), parameters.bones, proposer, &mut steps)?;
             Family::Bones(Box::new(bones))
         } else {
-            Family::KeyPoints(Box::new(KeyPoints::new(sequences, &here, parameters.method, &mut steps)?))
+            Family::KeyPoints(Box::new(KeyPointTransfer::new(sequences, &here, parameters.method, &mut steps)?))
         };
         Ok(Self { source: here, target: there, family, seconds: steps.stop() })
     }

@@ -22,7 +22,7 @@ const PATCH: f64 = 0.004;
 
 /// Vertices by bones.
 #[derive(Clone, Debug)]
-pub struct Bones {
+pub struct BoneClusters {
     /// The number of bones.
     pub count: usize,
     /// #N the bone of each vertex.
@@ -39,7 +39,7 @@ pub fn telling_poses(surface: &WeldedSurface, poses: &[Vec<DVec3>]) -> Vec<usize
 }
 
 /// Finds bones; at least one for a surface with vertices.
-pub fn find(surface: &WeldedSurface, poses: &[&[DVec3]], most: usize) -> Bones {
+pub fn find(surface: &WeldedSurface, poses: &[&[DVec3]], most: usize) -> BoneClusters {
     let step = surface.len().div_ceil(SAMPLES).max(1);
     let samples: Vec<usize> = (0..surface.len()).step_by(step).collect();
     let mut of = vec![0; samples.len()];
@@ -62,7 +62,7 @@ pub fn find(surface: &WeldedSurface, poses: &[&[DVec3]], most: usize) -> Bones {
     let all: Vec<usize> = (0..surface.len()).collect();
     let by_bone = fit(surface, poses, &all, &of, count);
     let motions = (0..poses.len()).map(|p| by_bone.iter().map(|bone| bone[p]).collect()).collect();
-    Bones { count, of, motions }
+    BoneClusters { count, of, motions }
 }
 
 /// For each bone its motion in each pose.

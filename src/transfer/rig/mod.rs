@@ -32,8 +32,8 @@ pub struct Rig {
 }
 
 impl Rig {
-    /// Finds at most `most` bones that explain the poses (positions in the unit ball, as the surface's) and binds the
-    /// surface to them.
+    /// Finds bones that explain the poses (positions in the unit ball, as the surface's), `most` at most but for those that
+    /// part where their vertices lie apart, and binds the surface to them.
     pub fn new(surface: &WeldedSurface, poses: &[Vec<DVec3>], most: usize) -> Self {
         let chosen = bones::telling_poses(surface, poses);
         let seen: Vec<&[DVec3]> = chosen.iter().map(|&p| poses[p].as_slice()).collect();

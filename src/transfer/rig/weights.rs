@@ -1,7 +1,7 @@
 //! Weights of the bones: for each vertex the blend of nearby bones that explains its poses best, held close to its
 //! neighbours' where the poses say little.
 
-use super::bones::Bones;
+use super::bones::BoneClusters;
 use crate::transfer::surface::WeldedSurface;
 use glam::DVec3;
 
@@ -22,7 +22,7 @@ const BESIDE: f64 = 0.5;
 pub const LEAST: f64 = 1e-4;
 
 /// #N rows of bones and their shares.
-pub fn bind(surface: &WeldedSurface, poses: &[&[DVec3]], bones: &Bones) -> Vec<Row> {
+pub fn bind(surface: &WeldedSurface, poses: &[&[DVec3]], bones: &BoneClusters) -> Vec<Row> {
     let hard = bones.of.iter().map(|&bone| vec![(bone, 1.0)]).collect();
     let mut rows = averaged(surface, hard, CANDIDATES, SOFTEN);
     let reach = reach(surface, bones);
@@ -34,7 +34,7 @@ pub fn bind(surface: &WeldedSurface, poses: &[&[DVec3]], bones: &Bones) -> Vec<R
 }
 
 /// For each bone itself and the bones that it borders on.
-fn reach(surface: &WeldedSurface, bones: &Bones) -> Vec<Vec<u32>> {
+fn reach(surface: &WeldedSurface, bones: &BoneClusters) -> Vec<Vec<u32>> {
     let mut reach: Vec<std::collections::BTreeSet<u32>> = (0..bones.count as u32).map(|b| [b].into()).collect();
     for v in 0..surface.len() {
         for &u in surface.neighbours(v) {
@@ -47,7 +47,7 @@ fn reach(surface: &WeldedSurface, bones: &Bones) -> Vec<Vec<u32>> {
 fn vertex(
     surface: &WeldedSurface,
     poses: &[&[DVec3]],
-    bones: &Bones,
+    bones: &BoneClusters,
     reach: &[Vec<u32>],
     v: usize,
     held: &[(u32, f64)],
