@@ -1,9 +1,9 @@
 //! Where the key points of one mesh lie on another, without being told, or told of some of them.
 //!
 //! Both surfaces are thinned out to samples with all distances between them (`sampled`). A spread of the source's
-//! samples and the points asked for (`crowd`) look for their places together (`consensus`), from several starts (`starts`):
-//! the figures laid over each other as they stand, turned (`ways`), or pulled to given pairs and tips, and from the other
-//! side; the outcome in which points agree best with each other counts (`stands`). Given pairs stay as they are and are
+//! samples and the points asked for (`point_set`) look for their places together (`consensus`), from several starts (`starts`):
+//! the figures laid over each other as they stand, turned (`orientations`), or pulled to given pairs and tips, and from the other
+//! side; the outcome in which points agree best with each other counts (`placements`). Given pairs stay as they are and are
 //! listened to more.
 //! Where tips of both figures (`tips`) have come to lie next to each other, they are laid on each other, and the points
 //! agree once more: limbs of other lengths are then followed to their ends. The rest is for the surfaces (`refine`).
@@ -14,25 +14,25 @@
 
 mod coarse;
 mod consensus;
-mod crowd;
 mod distances;
+mod orientations;
+mod placements;
+mod point_set;
 mod refine;
 mod sampled;
 mod similarity;
-mod stands;
 mod starts;
 mod tips;
-mod ways;
 
 use super::Pair;
 use crate::sequence::Sequence;
 use consensus::{Consensus, LAST};
-use crowd::{COMPANY, Crowd, Figures};
 use glam::DVec3;
-use refine::{Found, Refiner};
+use placements::Placement;
+use point_set::{Figures, PointSet, SPREAD};
+use refine::{BentTarget, Refiner};
 use sampled::{SAMPLES, SampledSurface};
 use serde::Serialize;
-use stands::Stand;
 
 /// How far points listen in the rounds after tips that have met are held.
 const REACHES_WITH_TIPS: [f64; 4] = [0.1; 4];
@@ -101,8 +101,8 @@ pub fn guides(proposer: Option<&Proposer>, pairs: &[Pair]) -> Vec<Pair> {
 pub struct Proposer {
     source: SampledSurface,
     target: SampledSurface,
-    /// How the figures may lie over each other, the likeliest first, and where the company comes to lie.
-    stands: Vec<Stand>,
+    /// How the figures may lie over each other, the likeliest first, and where a spread of its samples comes to lie.
+    placements: Vec<Placement>,
     refiner: Option<Refiner>,
 }
 
@@ -122,8 +122,8 @@ impl Proposer {
         let target =
             SampledSurface::new(target_faces, target_positions, SAMPLES).ok_or(ProposeError::Empty("target"))?;
         let refiner = Refiner::new(&source, &target);
-        let mut proposer = Self { source, target, stands: Vec::new(), refiner };
-        proposer.stands = stands::stands(proposer.figures());
+        let mut proposer = Self { source, target, placements: Vec::new(), refiner };
+        proposer.placements = placements::placements(proposer.figures());
         Ok(proposer)
     }
 
@@ -135,8 +135,8 @@ impl Proposer {
     /// Proposes a target vertex for every point (source vertices) whose place is not `known`.
     pub fn propose(&self, points: &[u32], known: &[Option<u32>]) -> Result<Proposals, ProposeError> {
         self.check(points, known)?;
-        let (crowd, at) = self.gather(points, known);
-        Ok(self.read(&self.figures().agree(&crowd, at, &REACHES_WITH_TIPS), points, known))
+        let (set, at) = self.gather(points, known);
+        Ok(self.read(&self.figures().agree(&set, at, &REACHES_WITH_TIPS), points, known))
     }
 
     /// Pairs all over both figures that seem to belong together if the given ones do. None of them is exact: they tell how
@@ -148,27 +148,27 @@ impl Proposer {
         let points: Vec<u32> = pairs.iter().map(|pair| pair.source).collect();
         let known: Vec<Option<u32>> = pairs.iter().map(|pair| Some(pair.target)).collect();
         self.check(&points, &known)?;
-        let (crowd, at) = self.gather(&points, &known);
-        let consensus = self.figures().agree(&crowd, at, &REACHES_WITH_TIPS);
-        let company = consensus.trusted().filter(|&i| i < crowd.company);
+        let (set, at) = self.gather(&points, &known);
+        let consensus = self.figures().agree(&set, at, &REACHES_WITH_TIPS);
+        let spread = consensus.trusted().filter(|&i| i < set.spread);
         let pair = |i: usize| {
             let target = self.target.samples[consensus.at[i]? as usize];
             Some(Pair { source: self.source.samples[i], target })
         };
-        Ok(company.filter_map(pair).collect())
+        Ok(spread.filter_map(pair).collect())
     }
 
     /// Those who look for their places, and where they find them before the last rounds; tips that have met hold on to each
     /// other.
-    fn gather(&self, points: &[u32], known: &[Option<u32>]) -> (Crowd, Vec<Option<u32>>) {
+    fn gather(&self, points: &[u32], known: &[Option<u32>]) -> (PointSet, Vec<Option<u32>>) {
         let figures = self.figures();
-        let mut crowd = figures.crowd(COMPANY[1], points, known);
-        let at = stands::best(figures, &self.stands, &crowd);
-        for (tip, other) in tips::met(&self.source, &self.target, crowd.company, &at) {
+        let mut set = figures.point_set(SPREAD[1], points, known);
+        let at = placements::best(figures, &self.placements, &set);
+        for (tip, other) in tips::met(&self.source, &self.target, set.spread, &at) {
             let place = || figures.place(self.target.samples[other as usize]);
-            crowd.points[tip as usize].given.get_or_insert_with(place);
+            set.points[tip as usize].given.get_or_insert_with(place);
         }
-        (crowd, at)
+        (set, at)
     }
 
     fn figures(&self) -> Figures<'_> {
@@ -194,7 +194,7 @@ impl Proposer {
 
     fn read(&self, consensus: &Consensus, points: &[u32], known: &[Option<u32>]) -> Proposals {
         let first = consensus.at.len() - points.len();
-        let found = self.refiner.as_ref().map(|refiner| Found::new(&self.target, refiner.bent(consensus)));
+        let found = self.refiner.as_ref().map(|refiner| BentTarget::new(&self.target, refiner.bent(consensus)));
         let proposal = |(i, known): (usize, &Option<u32>)| {
             if let Some(target) = known {
                 return Proposal { target: *target, confidence: 1.0 };

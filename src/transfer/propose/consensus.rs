@@ -12,7 +12,7 @@ use super::similarity::Similarity;
 use glam::DVec3;
 
 /// Points that each point listens to.
-const LISTENS: usize = 48;
+const VOTERS: usize = 48;
 
 /// How far the scale around a point may differ from the scale of all.
 const LOCAL_SCALE: [f64; 2] = [0.7, 1.4];
@@ -36,12 +36,12 @@ pub struct Point {
     /// How much others listen to it.
     pub weight: f64,
     /// The place it has on the target, if that is given or, for a tip, found.
-    pub given: Option<Target>,
+    pub given: Option<TargetPlace>,
 }
 
 /// A place on the target surface.
 #[derive(Clone, Debug)]
-pub struct Target {
+pub struct TargetPlace {
     /// Where it is.
     pub place: DVec3,
     /// Its distances from all samples of the target.
@@ -80,10 +80,10 @@ pub struct Consensus<'a> {
     trust: Vec<f64>,
 }
 
-/// What one point hears from the others.
-pub struct Voice {
+/// What the other points foretell for one.
+pub struct Prediction {
     /// (point, weight), the weights adding up to one.
-    pub heard: Vec<(u32, f64)>,
+    pub votes: Vec<(u32, f64)>,
     /// How much longer distances are on the target.
     pub scale: f64,
     /// Where the others would put it.
@@ -119,11 +119,11 @@ impl<'a> Consensus<'a> {
         let mut field = Vec::new();
         let mut next = Vec::with_capacity(self.points.len());
         for i in 0..self.points.len() {
-            let Some(voice) = self.voice(i, rules) else {
+            let Some(prediction) = self.prediction(i, rules) else {
                 next.push((self.at[i], 1.0));
                 continue;
             };
-            self.field(i, &voice, rules, &mut field);
+            self.field(i, &prediction, rules, &mut field);
             let best = match &self.points[i].given {
                 Some(given) => field.get(given.sample as usize).map(|&cost| (given.sample, cost)),
                 None => lowest(&field),
@@ -186,8 +186,8 @@ impl<'a> Consensus<'a> {
         self.points.iter().filter_map(|point| Some((point.place, point.given.as_ref()?.sample)))
     }
 
-    /// What a point hears; `None` if no other point has a place.
-    pub fn voice(&self, i: usize, rules: &Rules) -> Option<Voice> {
+    /// What the others foretell for a point; `None` if no other point has a place.
+    pub fn prediction(&self, i: usize, rules: &Rules) -> Option<Prediction> {
         let n = self.points.len();
         let row = &self.distances[i * n..(i + 1) * n];
         let weight = |j: usize| {
@@ -196,36 +196,36 @@ impl<'a> Consensus<'a> {
             point.weight * self.trust[j] / fall(far, rules.reach)
         };
         let others = (0..n).filter(|&j| j != i && self.at[j].is_some());
-        let mut heard: Vec<(u32, f64)> = others.map(|j| (j as u32, weight(j))).collect();
-        if heard.len() > LISTENS {
-            heard.select_nth_unstable_by(LISTENS, |a, b| b.1.total_cmp(&a.1).then(a.0.cmp(&b.0)));
-            heard.truncate(LISTENS);
-            heard.sort_unstable_by_key(|h| h.0);
+        let mut votes: Vec<(u32, f64)> = others.map(|j| (j as u32, weight(j))).collect();
+        if votes.len() > VOTERS {
+            votes.select_nth_unstable_by(VOTERS, |a, b| b.1.total_cmp(&a.1).then(a.0.cmp(&b.0)));
+            votes.truncate(VOTERS);
+            votes.sort_unstable_by_key(|v| v.0);
         }
-        let total: f64 = heard.iter().map(|h| h.1).sum();
+        let total: f64 = votes.iter().map(|v| v.1).sum();
         if total <= 0.0 {
             return None;
         }
-        heard.iter_mut().for_each(|h| h.1 /= total);
+        votes.iter_mut().for_each(|v| v.1 /= total);
         // A limb that is held another way moves with what is nearest alone.
         let near = |j: u32, w: f64| w / fall(f64::from(row[j as usize]), rules.reach);
-        let pairs = heard
+        let pairs = votes
             .iter()
             .filter_map(|&(j, w)| Some((near(j, w), self.points[j as usize].place, self.place(j as usize)?)));
         let motion = Similarity::fit(pairs);
-        Some(Voice {
-            scale: self.scale(row, &heard, i),
+        Some(Prediction {
+            scale: self.scale(row, &votes, i),
             place: motion.apply(self.points[i].place),
             normal: motion.rotation * self.points[i].normal,
-            heard,
+            votes,
         })
     }
 
     /// How much longer distances from a point are on the target.
-    fn scale(&self, row: &[f32], heard: &[(u32, f64)], i: usize) -> f64 {
+    fn scale(&self, row: &[f32], votes: &[(u32, f64)], i: usize) -> f64 {
         let Some(own) = self.at[i] else { return 1.0 };
         let (mut squares, mut theirs) = (1e-6, 1e-6);
-        for &(j, w) in heard {
+        for &(j, w) in votes {
             let Some(column) = self.column(j as usize) else { continue };
             let (here, there) = (f64::from(row[j as usize]), f64::from(column[own as usize]));
             squares += w * here * here;
@@ -235,14 +235,14 @@ impl<'a> Consensus<'a> {
     }
 
     /// What each considered sample would cost point `i`.
-    fn field(&self, i: usize, voice: &Voice, rules: &Rules, field: &mut Vec<f32>) {
+    fn field(&self, i: usize, prediction: &Prediction, rules: &Rules, field: &mut Vec<f32>) {
         let n = self.points.len();
         let row = &self.distances[i * n..(i + 1) * n];
         field.clear();
         field.resize(self.considered, 0.0);
-        for &(j, w) in &voice.heard {
+        for &(j, w) in &prediction.votes {
             let Some(column) = self.column(j as usize) else { continue };
-            let (w, wanted) = (w as f32, voice.scale as f32 * row[j as usize]);
+            let (w, wanted) = (w as f32, prediction.scale as f32 * row[j as usize]);
             for (cost, &there) in field.iter_mut().zip(column) {
                 let off = there - wanted;
                 *cost += w * off * off;
@@ -252,19 +252,19 @@ impl<'a> Consensus<'a> {
             *cost += REMOTE as f32 * (far - self.points[i].remote) * (far - self.points[i].remote);
         }
         for ((cost, place), normal) in field.iter_mut().zip(&self.target.places).zip(&self.target.normals) {
-            *cost += away(voice, *place, *normal, rules) as f32;
+            *cost += away(prediction, *place, *normal, rules) as f32;
         }
     }
 
     /// What a vertex of the target would cost a point.
     pub fn price(&self, i: usize, rules: &Rules) -> Option<impl Fn(u32) -> f64 + '_> {
-        let voice = self.voice(i, rules)?;
+        let prediction = self.prediction(i, rules)?;
         let (n, rules) = (self.points.len(), *rules);
         let row = &self.distances[i * n..(i + 1) * n];
-        let columns: Vec<(f64, f64, &[f32])> = voice
-            .heard
+        let columns: Vec<(f64, f64, &[f32])> = prediction
+            .votes
             .iter()
-            .filter_map(|&(j, w)| Some((w, voice.scale * f64::from(row[j as usize]), self.column(j as usize)?)))
+            .filter_map(|&(j, w)| Some((w, prediction.scale * f64::from(row[j as usize]), self.column(j as usize)?)))
             .collect();
         Some(move |v: u32| {
             let target = self.target;
@@ -274,7 +274,7 @@ impl<'a> Consensus<'a> {
             let r: f64 = reading.iter().map(|&(s, w)| f64::from(w * target.remote[s as usize])).sum();
             distances
                 + REMOTE * (r - f64::from(self.points[i].remote)).powi(2)
-                + away(&voice, target.points[v as usize], target.vertex_normals[v as usize], &rules)
+                + away(&prediction, target.points[v as usize], target.vertex_normals[v as usize], &rules)
         })
     }
 
@@ -310,8 +310,9 @@ fn fall(far: f64, reach: f64) -> f64 {
 }
 
 /// What it costs to be away from where the others would put a point, and to face another way.
-fn away(voice: &Voice, place: DVec3, normal: DVec3, rules: &Rules) -> f64 {
-    rules.place * place.distance_squared(voice.place).min(FAR) + 0.5 * rules.facing * (1.0 - voice.normal.dot(normal))
+fn away(prediction: &Prediction, place: DVec3, normal: DVec3, rules: &Rules) -> f64 {
+    rules.place * place.distance_squared(prediction.place).min(FAR)
+        + 0.5 * rules.facing * (1.0 - prediction.normal.dot(normal))
 }
 
 /// The lowest finite value and where it is; of equals, the first.

@@ -71,14 +71,14 @@ impl Refiner {
 }
 
 /// The bent target as something on which to find points of the source.
-pub struct Found<'a> {
+pub struct BentTarget<'a> {
     target: &'a SampledSurface,
     bent: Vec<DVec3>,
     normals: Vec<DVec3>,
     tree: KdTree<6>,
 }
 
-impl<'a> Found<'a> {
+impl<'a> BentTarget<'a> {
     /// `bent` are the places of the target's samples on the source.
     pub fn new(target: &'a SampledSurface, bent: Vec<DVec3>) -> Self {
         let mut normals = vec![DVec3::ZERO; bent.len()];

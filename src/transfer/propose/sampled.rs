@@ -70,9 +70,9 @@ impl SampledSurface {
         let stands = weld(&[&points], 1e-7);
         let welded: Vec<[u32; 3]> = sound(&outward(faces, &points), &stands);
         let used = used(&welded, &stands, diagonal);
-        let heard = of_large_pieces(&welded, &points, &used, samples.max(2) / 2);
+        let eligible = of_large_pieces(&welded, &points, &used, samples.max(2) / 2);
         let fine = Graph::new(points.len(), &coarse::edges(&welded, &points));
-        let (samples, mut paths) = farthest(&fine, &points, &heard, samples.max(1));
+        let (samples, mut paths) = farthest(&fine, &points, &eligible, samples.max(1));
         reach_all(&mut paths, &stands, &samples, &points);
         let cell = paths.label;
         let places: Vec<DVec3> = samples.iter().map(|&v| points[v as usize]).collect();
@@ -219,11 +219,11 @@ fn of_large_pieces(faces: &[[u32; 3]], points: &[DVec3], used: &[u32], most: usi
         large[!reversed as usize] = true;
         left -= areas[!reversed as usize];
     }
-    let mut heard = vec![false; points.len()];
+    let mut eligible = vec![false; points.len()];
     for (corners, &piece) in faces.iter().zip(&pieces.face) {
-        corners.iter().for_each(|&v| heard[v as usize] |= large[piece as usize]);
+        corners.iter().for_each(|&v| eligible[v as usize] |= large[piece as usize]);
     }
-    used.iter().copied().filter(|&v| heard[v as usize]).collect()
+    used.iter().copied().filter(|&v| eligible[v as usize]).collect()
 }
 
 /// Farthest point sampling among `used`, from the vertex farthest from the middle; with the cells.

@@ -1,10 +1,10 @@
-//! Where a crowd may begin: the source laid over the target, also pulled to given pairs and to tips.
+//! Where a set may begin: the source laid over the target, also pulled to given pairs and to tips.
 
 use super::consensus::Point;
-use super::crowd::{CONSIDERED, Crowd, Figures};
+use super::orientations::Orientation;
+use super::point_set::{CONSIDERED, Figures, PointSet};
 use super::sampled::SampledSurface;
 use super::tips;
-use super::ways::Way;
 use glam::{DMat3, DVec3};
 
 /// What facing away costs when samples look for the nearest place.
@@ -21,9 +21,9 @@ const TIPS_BY_PLACE: [f64; 2] = [0.2, 4.0];
 pub const TELLING: usize = 2;
 
 /// A point of the source and its place on the target, after a weight.
-pub type Pair = (f64, DVec3, DVec3);
+pub type WeightedPair = (f64, DVec3, DVec3);
 
-/// Samples of the target, one for each point of a crowd; `None` for a point that has no place yet.
+/// Samples of the target, one for each point of a set; `None` for a point that has no place yet.
 pub type Places = Vec<Option<u32>>;
 
 /// By how much pairs move what is near them once `map` has laid the source over the target: without it, the legs
@@ -31,30 +31,30 @@ pub type Places = Vec<Option<u32>>;
 ///
 /// Inverse distance weighting (D. Shepard, *A two-dimensional interpolation function for irregularly-spaced data*,
 /// Proceedings of the 23rd ACM National Conference, 1968, pp. 517–524), softened.
-fn pull(pairs: &[Pair], map: DMat3, place: DVec3) -> DVec3 {
+fn pull(pairs: &[WeightedPair], map: DMat3, place: DVec3) -> DVec3 {
     let weight = |from: DVec3| (place.distance_squared(from) + PULL * PULL).powi(-2);
     let total: f64 = pairs.iter().map(|&(_, from, _)| weight(from)).sum();
     pairs.iter().map(|&(_, from, to)| weight(from) / total * (to - map * from)).sum()
 }
 
-/// Places (#points samples of the target) to begin with, in one way.
-pub fn starts(figures: Figures, crowd: &Crowd, way: Way, given: &[Pair]) -> Vec<Places> {
+/// Places (#points samples of the target) to begin with, in one orientation.
+pub fn starts(figures: Figures, set: &PointSet, orientation: Orientation, given: &[WeightedPair]) -> Vec<Places> {
     let mut starts = Vec::new();
-    let laid = |map: DMat3, pairs: &[Pair]| laid(figures.target, crowd, &|p| map * p + pull(pairs, map, p), map);
+    let laid = |map: DMat3, pairs: &[WeightedPair]| laid(figures.target, set, &|p| map * p + pull(pairs, map, p), map);
     let by_place = if given.len() < TELLING { &TIPS_BY_PLACE[..] } else { &TIPS_BY_PLACE[..1] };
-    for map in way.maps {
+    for map in orientation.maps {
         starts.push(laid(map, &[]));
         if !given.is_empty() {
             starts.push(laid(map, given));
         }
         for &by_place in by_place {
-            let tips = tips::assign(figures.source, figures.target, crowd, map, by_place);
-            let mut at = vec![None; crowd.points.len()];
+            let tips = tips::assign(figures.source, figures.target, set, map, by_place);
+            let mut at = vec![None; set.points.len()];
             tips.iter().for_each(|&(point, sample)| at[point as usize] = Some(sample));
             starts.push(at);
             if given.len() < TELLING {
                 let tip = |&(point, sample): &(u32, u32)| {
-                    (1.0, crowd.points[point as usize].place, figures.target.places[sample as usize])
+                    (1.0, set.points[point as usize].place, figures.target.places[sample as usize])
                 };
                 starts.push(laid(map, &given.iter().copied().chain(tips.iter().map(tip)).collect::<Vec<_>>()));
             }
@@ -64,7 +64,7 @@ pub fn starts(figures: Figures, crowd: &Crowd, way: Way, given: &[Pair]) -> Vec<
 }
 
 /// For each point, the considered sample of the target nearest to where a map puts it, that faces the same way.
-pub fn laid(target: &SampledSurface, crowd: &Crowd, map: &dyn Fn(DVec3) -> DVec3, turn: DMat3) -> Places {
+pub fn laid(target: &SampledSurface, set: &PointSet, map: &dyn Fn(DVec3) -> DVec3, turn: DMat3) -> Places {
     let considered = CONSIDERED.min(target.len());
     let nearest = |point: &Point| {
         let (place, normal) = (map(point.place), (turn * point.normal).normalize_or_zero());
@@ -74,5 +74,5 @@ pub fn laid(target: &SampledSurface, crowd: &Crowd, map: &dyn Fn(DVec3) -> DVec3
         let costs = (0..considered as u32).map(|s| (s, cost(s)));
         costs.min_by(|a, b| a.1.total_cmp(&b.1)).map(|best| best.0)
     };
-    crowd.points.iter().map(nearest).collect()
+    set.points.iter().map(nearest).collect()
 }

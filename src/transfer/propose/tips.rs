@@ -5,7 +5,7 @@
 //! the places decide. That gives places to begin with ([`assign`]). In the end, the tips that have come to lie nearest to
 //! each other are partners ([`met`]).
 
-use super::crowd::Crowd;
+use super::point_set::PointSet;
 use super::sampled::SampledSurface;
 use glam::{DMat3, DVec3};
 
@@ -38,22 +38,22 @@ pub fn tips(surface: &SampledSurface, among: usize) -> Vec<u32> {
     (0..among as u32).filter(tip).take(MOST).collect()
 }
 
-/// Assigns tips of the crowd's company (the first samples of `source`) to tips of the target.
+/// Assigns tips of the set's spread (the first samples of `source`) to tips of the target.
 ///
 /// `map` lays the source over the target; a squared distance between places costs `by_place`, where one of distances along
-/// the surface costs one. Returns (member of the crowd, sample of the target).
+/// the surface costs one. Returns (member of the set, sample of the target).
 pub fn assign(
     source: &SampledSurface,
     target: &SampledSurface,
-    crowd: &Crowd,
+    set: &PointSet,
     map: DMat3,
     by_place: f64,
 ) -> Vec<(u32, u32)> {
-    let (own, others) = (tips(source, crowd.company), tips(target, crowd.company));
-    let n = crowd.points.len();
-    let row = |i: u32| &crowd.distances[i as usize * n..(i as usize + 1) * n];
+    let (own, others) = (tips(source, set.spread), tips(target, set.spread));
+    let n = set.points.len();
+    let row = |i: u32| &set.distances[i as usize * n..(i as usize + 1) * n];
     let fixed: Vec<(u32, &[f32])> = (0..)
-        .zip(&crowd.points)
+        .zip(&set.points)
         .filter_map(|(i, p): (u32, _)| Some((i, p.given.as_ref()?.distances.as_slice())))
         .collect();
     let mut beam: Vec<(f64, Vec<Option<u32>>)> = vec![(0.0, Vec::new())];
@@ -66,7 +66,7 @@ pub fn assign(
                 let pairs =
                     before.chain(fixed.iter().copied()).map(|(s, to)| (row(tip)[s as usize], to[other as usize]));
                 let off = mean_square(pairs);
-                let apart = apart(crowd.points[tip as usize].place, target.places[other as usize], map);
+                let apart = apart(set.points[tip as usize].place, target.places[other as usize], map);
                 next.push((cost + off + by_place * apart, [partners.as_slice(), &[Some(other)]].concat()));
             }
         }
@@ -78,13 +78,13 @@ pub fn assign(
     own.iter().zip(best).filter_map(|(&tip, partner)| Some((tip, partner?))).collect()
 }
 
-/// Tips of both whose places have come to lie nearest to each other's, `at` (#crowd) being where the crowd is.
+/// Tips of both whose places have come to lie nearest to each other's, `at` (#set) being where the set is.
 ///
-/// Returns (member of the crowd's company, sample of the target).
-pub fn met(source: &SampledSurface, target: &SampledSurface, company: usize, at: &[Option<u32>]) -> Vec<(u32, u32)> {
+/// Returns (member of the set's spread, sample of the target).
+pub fn met(source: &SampledSurface, target: &SampledSurface, spread: usize, at: &[Option<u32>]) -> Vec<(u32, u32)> {
     let own: Vec<(u32, u32)> =
-        tips(source, company).into_iter().filter_map(|tip| Some((tip, at[tip as usize]?))).collect();
-    let others = tips(target, company);
+        tips(source, spread).into_iter().filter_map(|tip| Some((tip, at[tip as usize]?))).collect();
+    let others = tips(target, spread);
     let far = |place: u32, other: u32| target.row(place)[other as usize];
     let nearest_other = |place: u32| others.iter().copied().min_by(|&a, &b| far(place, a).total_cmp(&far(place, b)));
     let nearest_own = |other: u32| own.iter().min_by(|a, b| far(a.1, other).total_cmp(&far(b.1, other)));

@@ -1,6 +1,6 @@
 //! Ways in which one figure may be laid over another: turned by quarters, with or without a stretch.
 
-use super::crowd::Figures;
+use super::point_set::Figures;
 use glam::{DMat3, DVec3};
 
 /// How far a stretch to the target's box may go, either way, from its mean.
@@ -8,14 +8,14 @@ const STRETCH: [f64; 2] = [0.6, 1.6];
 
 /// A way in which the source may be laid over the target.
 #[derive(Clone, Copy, Debug)]
-pub struct Way {
+pub struct Orientation {
     /// One of the turns of a cube.
     pub turn: DMat3,
     /// The turn, and the turn with a stretch to the target's box.
     pub maps: [DMat3; 2],
 }
 
-impl Way {
+impl Orientation {
     /// With a turn.
     pub fn new(figures: Figures, turn: DMat3) -> Self {
         let stretch = stretch(figures.source.sides, figures.target.sides, turn);
