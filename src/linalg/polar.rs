@@ -34,6 +34,16 @@ fn newton(m: DMat3) -> Option<DMat3> {
     None
 }
 
+/// The cosine of the angle by which a rotation turns.
+pub fn cosine(rotation: DMat3) -> f64 {
+    0.5 * (rotation.x_axis.x + rotation.y_axis.y + rotation.z_axis.z - 1.0)
+}
+
+/// The angle by which a rotation turns, in radians.
+pub fn angle(rotation: DMat3) -> f64 {
+    cosine(rotation).clamp(-1.0, 1.0).acos()
+}
+
 /// Square root of the sum of squared entries.
 pub fn frobenius(m: DMat3) -> f64 {
     frobenius_squared(m).sqrt()

@@ -3,6 +3,7 @@
 //! Characters usually differ in their up-axis or not at all, so that one of the 24 turns that carry axes to axes is the
 //! right one; a turn by a few degrees which proportions alone suggest would make the target walk askew.
 
+use crate::linalg::polar::cosine;
 use crate::linalg::rigid_fit::Moments;
 use glam::{DMat3, DVec3};
 
@@ -89,8 +90,7 @@ fn turn(centred: &[(DVec3, DVec3)]) -> DMat3 {
     let mut moments = Moments::default();
     centred.iter().for_each(|p| moments.add(1.0, p.0, p.1));
     let free = moments.motion().rotation;
-    let relative = along.transpose() * free;
-    let cosine = 0.5 * (relative.x_axis.x + relative.y_axis.y + relative.z_axis.z - 1.0);
+    let cosine = cosine(along.transpose() * free);
     if cosine < ANGLE && apart(along) > WORSE * apart(free) { free } else { along }
 }
 

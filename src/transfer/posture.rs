@@ -1,9 +1,10 @@
 //! Whether two references stand in one posture: arms that hang on one and are spread on the other turn about other axes.
 
 use super::rig::weights::{Row, main_bone};
-use crate::linalg::rigid_fit::{Moments, RigidMotion};
+use crate::linalg::polar::angle;
+use crate::linalg::rigid_fit::Moments;
 use crate::warning::Warning;
-use glam::{DMat3, DVec3};
+use glam::DVec3;
 
 /// A bone that is turned by more than this (radians) stands differently.
 const TURNED: f64 = 0.6;
@@ -20,7 +21,8 @@ pub fn differ(rest: &[DVec3], bent: &[DVec3], rows: &[Row], areas: &[f64], bones
         bone.add(area, from, to);
         *sum += area;
     }
-    let turned = moments.iter().filter(|(bone, _)| angle(bone.motion()) > TURNED).map(|bone| bone.1).sum::<f64>();
+    let turned =
+        moments.iter().filter(|(bone, _)| angle(bone.motion().rotation) > TURNED).map(|bone| bone.1).sum::<f64>();
     (turned > FEW).then(|| {
         let message = format!(
             "the two stand in different postures: {:.0} % of the target is turned by more than {:.0}° against the source, and \
@@ -30,10 +32,4 @@ pub fn differ(rest: &[DVec3], bent: &[DVec3], rows: &[Row], areas: &[f64], bones
         );
         Warning::new("different-postures", message)
     })
-}
-
-/// By how much a motion turns, in radians.
-fn angle(RigidMotion { rotation, .. }: RigidMotion) -> f64 {
-    let DMat3 { x_axis, y_axis, z_axis } = rotation;
-    (0.5 * (x_axis.x + y_axis.y + z_axis.z - 1.0)).clamp(-1.0, 1.0).acos()
 }

@@ -18,6 +18,7 @@ use super::gradients::solver::Solver;
 use super::surface::WeldedSurface;
 use crate::linalg::cholesky::NotPositiveDefinite;
 use crate::linalg::outer::outer;
+use crate::linalg::polar::angle;
 use crate::linalg::rigid_fit::best_rotation;
 use crate::mesh::face;
 use glam::{DMat3, DVec3};
@@ -128,8 +129,7 @@ fn rotations(
 fn stay(target: &WeldedSurface, turns: &[DMat3], areas: &[f64], positions: &mut [DVec3]) {
     let (mut off, mut total) = (DVec3::ZERO, 0.0);
     for ((corners, turn), area) in target.faces.iter().zip(turns).zip(areas) {
-        let cosine = 0.5 * (turn.x_axis.x + turn.y_axis.y + turn.z_axis.z - 1.0);
-        let weight = area / (1.0 + (cosine.clamp(-1.0, 1.0).acos() / STAYS).powi(4));
+        let weight = area / (1.0 + (angle(*turn) / STAYS).powi(4));
         for &v in corners {
             off += weight * (positions[v as usize] - target.positions[v as usize]);
             total += weight;
