@@ -16,7 +16,7 @@ use sinew::import::{File, Imported, Up, may_be_needed, natural_order};
 use sinew::mesh::ball::unit_ball;
 use sinew::observer::Silent;
 use sinew::sequence::Sequence;
-use sinew::transfer::{Method, Pair, Parameters, Transfer as Result_, transfer};
+use sinew::transfer::{Method, Pair, Parameters, Transfer as Transferred, transfer};
 use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
 
@@ -247,7 +247,7 @@ fn distances(found: &[DVec3], truth: &[DVec3], radius: f64) -> Vec<f64> {
 
 /// The moving target as a skin over its handles; the root mean square and the largest error that this form adds, over the
 /// diagonal.
-fn write_light(path: &Path, source: &Sequence, target: &Imported, result: &Result_) -> Result<[f64; 2], Refusal> {
+fn write_light(path: &Path, source: &Sequence, target: &Imported, result: &Transferred) -> Result<[f64; 2], Refusal> {
     let Imported { sequence: target, look, .. } = target;
     let poses = source.poses().iter().zip(&result.skin.maps);
     let poses: Vec<SkinPose> = poses.map(|(pose, maps)| SkinPose { name: &pose.name, time: pose.time, maps }).collect();
@@ -325,7 +325,7 @@ fn report(
     target: &Imported,
     pairs: &[Pair],
     parameters: &Parameters,
-    result: &Result_,
+    result: &Transferred,
     errors: Option<&Errors>,
     [reading, blending]: [f64; 2],
 ) -> Value {
@@ -352,7 +352,7 @@ fn report(
     })
 }
 
-fn print(source: &Imported, target: &Imported, pairs: &[Pair], result: &Result_, errors: Option<&Errors>) {
+fn print(source: &Imported, target: &Imported, pairs: &[Pair], result: &Transferred, errors: Option<&Errors>) {
     let seconds: f64 = result.seconds.iter().map(|(_, time)| time).sum();
     say(format_args!(
         "{} moves like {}: {} by {}, {}, {seconds:.2} s",
