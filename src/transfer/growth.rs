@@ -9,12 +9,11 @@ const STEADY: f64 = 0.02;
 /// How many times as large as at rest a surface is in a pose (#N positions in its unit ball): the median over its edges,
 /// 1 if that is nearly so.
 pub fn growth(surface: &WeldedSurface, pose: &[DVec3]) -> f64 {
-    let upward = |v: usize| surface.neighbours(v).iter().map(move |&u| (v, u as usize)).filter(|(v, u)| v < u);
     let ratio = |(a, b): (usize, usize)| {
         let rest = surface.positions[a].distance(surface.positions[b]);
         (rest > 0.0).then(|| pose[a].distance(pose[b]) / rest).filter(|ratio| ratio.is_finite())
     };
-    let mut ratios: Vec<f64> = (0..surface.len()).flat_map(upward).filter_map(ratio).collect();
+    let mut ratios: Vec<f64> = surface.links().filter_map(ratio).collect();
     if ratios.is_empty() {
         return 1.0;
     }

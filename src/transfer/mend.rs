@@ -29,7 +29,7 @@ pub const SHORT: f64 = 2e-3;
 /// By how much edges of a moving surface may become longer on another that follows it.
 pub fn allowed(surface: &WeldedSurface, poses: &[&[DVec3]]) -> f64 {
     let mut stretches: Vec<f64> =
-        edges(surface).map(|(a, b)| longest(surface, a, b, |v, pose| poses[pose][v], poses.len())).collect();
+        surface.links().map(|(a, b)| longest(surface, a, b, |v, pose| poses[pose][v], poses.len())).collect();
     if stretches.is_empty() {
         return LEAST;
     }
@@ -50,7 +50,7 @@ pub fn close(surface: &WeldedSurface, rows: &mut [Row], poses: &[&[DAffine3]], a
     let mut moved = vec![DVec3::ZERO; rows.len() * poses.len()];
     let of = |v: usize| v * poses.len()..(v + 1) * poses.len();
     rows.iter().enumerate().for_each(|(v, row)| follow(v, row, &mut moved[of(v)]));
-    let mut suspects: Vec<(usize, usize)> = edges(surface).collect();
+    let mut suspects: Vec<(usize, usize)> = surface.links().collect();
     let averages = (AVERAGES * rows.len()).div_ceil(AVERAGED).clamp(AVERAGES, MOST_AVERAGES);
     let (mut averager, mut next) = (Averager::default(), Vec::new());
     for _ in 0..ROUNDS {
@@ -138,11 +138,6 @@ fn within(surface: &WeldedSurface, from: &[(f64, u32)]) -> Vec<u32> {
         }
     }
     left.into_keys().collect()
-}
-
-fn edges(surface: &WeldedSurface) -> impl Iterator<Item = (usize, usize)> + '_ {
-    let upward = |v: usize| surface.neighbours(v).iter().map(move |&u| (v, u as usize)).filter(|(v, u)| v < u);
-    (0..surface.len()).flat_map(upward)
 }
 
 /// The largest factor by which an edge becomes longer in any pose.

@@ -184,6 +184,12 @@ impl WeldedSurface {
         &self.around[self.start[place] as usize..self.start[place + 1] as usize]
     }
 
+    /// The pairs of places that share an edge or a tie, the lower number first.
+    pub fn links(&self) -> impl Iterator<Item = (usize, usize)> + '_ {
+        let upward = |v: usize| self.neighbours(v).iter().map(move |&u| (v, u as usize)).filter(|(v, u)| v < u);
+        (0..self.len()).flat_map(upward)
+    }
+
     /// The places that share an edge or a tie with a place.
     pub fn neighbours(&self, place: usize) -> &[u32] {
         &self.beside[self.neighbour_start[place] as usize..self.neighbour_start[place + 1] as usize]
