@@ -7,17 +7,12 @@
 
 use super::alignment::Alignment;
 use super::propose::{Proposer, guides};
-use super::registration::{ClosestPoints, Effort, Known, LOST, Pin, Registration, closest_points};
+use super::registration::{ClosestPoints, Effort, Known, LOST, Pin, Registration, closest_points, shape_to_keep};
 use super::spline::Spline;
 use super::surface::{SurfacePoint, WeldedSurface};
 use super::{Pair, TransferError};
 use glam::DVec3;
 use std::sync::Arc;
-
-/// How far the shape that the bent target keeps is that which the pairs suggest, not its own.
-const BELIEF: f64 = 0.5;
-/// How far the spline through guides may miss them, as a length in the unit ball: they are not exact.
-const LOOSE: f64 = 0.1;
 
 /// A [`misfit`] below which no other is sought.
 const WELL: f64 = 0.01;
@@ -73,7 +68,7 @@ impl Bending {
                 let at = self.registration.bend(
                     (source, &self.closest),
                     target,
-                    &shape(&rest, &placed),
+                    &shape_to_keep(&rest, &placed),
                     start,
                     Known { pins: &pins, hints: &hints },
                     Effort::Last,
@@ -111,7 +106,7 @@ impl Bending {
             let at = self.registration.bend(
                 (source, &self.closest),
                 target,
-                &shape(&rest, &placed),
+                &shape_to_keep(&rest, &placed),
                 placed,
                 Known { pins, hints: &hints },
                 Effort::Whole,
@@ -135,12 +130,6 @@ impl Bending {
     }
 }
 
-/// The shape to keep lies between the target's own and the one that it is thought to have, with its points where they belong:
-/// proportions differ, and so do poses.
-fn shape(rest: &[DVec3], placed: &[DVec3]) -> Vec<DVec3> {
-    rest.iter().zip(placed).map(|(r, p)| r.lerp(*p, BELIEF)).collect()
-}
-
 /// Vertices of the target and where they belong on the source.
 fn pinned(source: &WeldedSurface, target: &WeldedSurface, pairs: &[Pair]) -> Vec<Pin> {
     let pin = |pair: &Pair| {
@@ -160,7 +149,7 @@ fn displaced(rest: &[DVec3], points: &[DVec3], pins: &[Pin]) -> Vec<DVec3> {
 /// The same from `rest`, where pins are not exact.
 fn smoothed(rest: &[DVec3], pins: &[Pin]) -> Vec<DVec3> {
     let missing = |pin: &Pin| (rest[pin.vertex as usize], pin.point - rest[pin.vertex as usize]);
-    let spline = Spline::loose(&pins.iter().map(missing).collect::<Vec<_>>(), LOOSE);
+    let spline = Spline::loose(&pins.iter().map(missing).collect::<Vec<_>>());
     rest.iter().map(|&r| r + spline.at(r)).collect()
 }
 

@@ -26,6 +26,8 @@ const AGREE: f64 = 0.3;
 /// What lies farther from the source than this, in its radii, after the first rounds of growth has no twin there.
 pub const LOST: f64 = 0.08;
 const ROUGH: usize = 2;
+/// How far the shape that the bent target keeps is that which is thought of it, not its own.
+const BELIEF: f64 = 0.5;
 /// A place of the source belongs to what is known to lie nearest to it, and to what on the target is no farther from that
 /// than this, in radii,
 const NEAR: f64 = 0.35;
@@ -224,6 +226,12 @@ fn goals(
         (agrees && owners.allow(target, v, found)).then_some(found)
     };
     at.iter().zip(&normals).enumerate().map(|vertex| goal(vertex).unwrap_or(*vertex.1.0)).collect()
+}
+
+/// The shape to keep lies between the target's own and the one that it is thought to have, with its points where they belong:
+/// proportions differ, and so do poses.
+pub fn shape_to_keep(rest: &[DVec3], placed: &[DVec3]) -> Vec<DVec3> {
+    rest.iter().zip(placed).map(|(r, p)| r.lerp(*p, BELIEF)).collect()
 }
 
 /// For each vertex of the bent target the closest point of the source, and how far that is.

@@ -8,6 +8,8 @@ use nalgebra::DMatrix;
 
 /// Added on the diagonal, in lengths.
 const RIDGE: f64 = 1e-3;
+/// The same where displacements are not exact.
+const LOOSE: f64 = 0.1;
 /// Points that take part: the system is dense.
 const MOST: usize = 500;
 
@@ -22,11 +24,15 @@ impl Spline {
     /// Interpolates displacements at points that differ; near repetitions are met in the mean. Of more than 500 points
     /// some are met, evenly.
     pub fn new(known: &[(DVec3, DVec3)]) -> Self {
-        Self::loose(known, RIDGE)
+        Self::with_ridge(known, RIDGE)
     }
 
-    /// Displacements that are not exact are smoothed over: the more, the larger `ridge`, a length.
-    pub fn loose(known: &[(DVec3, DVec3)], ridge: f64) -> Self {
+    /// Smooths over displacements that are not exact.
+    pub fn loose(known: &[(DVec3, DVec3)]) -> Self {
+        Self::with_ridge(known, LOOSE)
+    }
+
+    fn with_ridge(known: &[(DVec3, DVec3)], ridge: f64) -> Self {
         let known: Vec<&(DVec3, DVec3)> = known.iter().step_by(known.len().div_ceil(MOST).max(1)).collect();
         let n = known.len();
         let points: Vec<DVec3> = known.iter().map(|k| k.0).collect();

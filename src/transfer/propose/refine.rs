@@ -8,17 +8,13 @@ use super::consensus::Consensus;
 use super::sampled::SampledSurface;
 use crate::mesh::kd_tree::KdTree;
 use crate::sequence::Sequence;
-use crate::transfer::registration::{ClosestPoints, Effort, Known, Pin, Registration};
+use crate::transfer::registration::{ClosestPoints, Effort, Known, Pin, Registration, shape_to_keep};
 use crate::transfer::spline::Spline;
 use crate::transfer::surface::WeldedSurface;
 use glam::DVec3;
 
 /// Points that say where the target lies.
 const GUIDES: usize = 140;
-/// How far the spline through them may miss them, as a length: they are not exact.
-const LOOSE: f64 = 0.1;
-/// How far the shape that the bent target keeps is that which the guides suggest, not its own.
-const BELIEF: f64 = 0.5;
 /// Samples of the bent target near a point, whose cells are searched.
 const NEAR: usize = 6;
 /// What a difference of unit normals counts, as a length.
@@ -55,9 +51,9 @@ impl Refiner {
         let guides = consensus.guides(GUIDES);
         let known: Vec<(DVec3, DVec3)> =
             guides.iter().map(|&(from, to)| (inward(to), inward(from) - inward(to))).collect();
-        let spline = Spline::loose(&known, LOOSE);
+        let spline = Spline::loose(&known);
         let start: Vec<DVec3> = rest.iter().map(|&p| p + spline.at(p)).collect();
-        let shape: Vec<DVec3> = rest.iter().zip(&start).map(|(r, p)| r.lerp(*p, BELIEF)).collect();
+        let shape = shape_to_keep(&rest, &start);
         let pins: Vec<Pin> = consensus
             .given()
             .map(|(point, sample)| Pin { vertex: self.target.place[sample as usize], point: inward(point) })
