@@ -2,6 +2,7 @@
 
 use super::container::Writer;
 use crate::look::Look;
+use crate::mesh::face::vertex_normals;
 use glam::{DVec3, Vec3};
 use serde_json::{Map, Value, json};
 
@@ -62,18 +63,11 @@ impl<'a> Cover<'a> {
         if self.look.is_some_and(|look| look.shades.is_empty()) {
             return None;
         }
-        let mut sums = vec![DVec3::ZERO; positions.len()];
-        for corners in &self.shaded {
-            let [a, b, c] = corners.map(|v| positions[v as usize]);
-            let normal = (b - a).cross(c - a);
-            for &v in corners {
-                sums[v as usize] += normal;
-            }
-        }
-        let unit = |sum: DVec3| sum.try_normalize().unwrap_or(DVec3::Y).as_vec3().normalize_or(Vec3::Y);
+        let normals = vertex_normals(&self.shaded, positions);
+        let unit = |normal: DVec3| normal.as_vec3().normalize_or(Vec3::Y);
         Some(match self.look {
-            Some(look) => look.shades.iter().map(|&v| unit(sums[v as usize])).collect(),
-            None => sums.into_iter().map(unit).collect(),
+            Some(look) => look.shades.iter().map(|&v| unit(normals[v as usize])).collect(),
+            None => normals.into_iter().map(unit).collect(),
         })
     }
 

@@ -1,5 +1,6 @@
 //! Labels as text: one whole number a line for each face of the input, in the input's order.
 
+use crate::mesh::face;
 use crate::sequence::Sequence;
 use std::collections::BTreeMap;
 
@@ -13,8 +14,8 @@ pub fn of_input_faces(sequence: &Sequence, labels: &[u32], input_faces: usize) -
     let mut votes: Vec<BTreeMap<u32, f64>> = vec![BTreeMap::new(); input_faces];
     for ((face, &polygon), &label) in sequence.faces().iter().zip(polygons).zip(labels) {
         if let Some(votes) = votes.get_mut(polygon as usize) {
-            let [a, b, c] = face.map(|v| sequence.reference()[v as usize]);
-            *votes.entry(label).or_default() += (b - a).cross(c - a).length();
+            let normal = face::double_area_normal(face::corners(sequence.reference(), *face));
+            *votes.entry(label).or_default() += normal.length();
         }
     }
     let mut last = labels.first().copied().unwrap_or(0);

@@ -1,6 +1,7 @@
 //! Vertices that are one point of the surface, stored more than once: joined, and what collapses with it removed.
 
 use super::counted;
+use crate::mesh::face::is_whole;
 use crate::mesh::weld::{compact, weld};
 use crate::sequence::Pose;
 use crate::warning::Warning;
@@ -46,13 +47,12 @@ pub fn weld_seams(
 
 /// Removes faces of which two corners are one vertex. Returns the old numbers of those that stay, if any had to go.
 pub fn drop_collapsed(faces: &mut Vec<[u32; 3]>, warnings: &mut Vec<Warning>) -> Option<Vec<u32>> {
-    let whole = |&[a, b, c]: &[u32; 3]| a != b && b != c && c != a;
-    let stay: Vec<u32> = (0..faces.len() as u32).filter(|&f| whole(&faces[f as usize])).collect();
+    let stay: Vec<u32> = (0..faces.len() as u32).filter(|&f| is_whole(&faces[f as usize])).collect();
     let gone = faces.len() - stay.len();
     if gone == 0 {
         return None;
     }
-    faces.retain(whole);
+    faces.retain(is_whole);
     let message = format!("{} left out because two corners are one point.", counted(gone, "face was", "faces were"));
     warnings.push(Warning::new("collapsed-faces", message));
     Some(stay)

@@ -1,6 +1,7 @@
 //! The mesh on which key points are sought: welded, in the unit sphere.
 
 use crate::mesh::ball::unit_ball;
+use crate::mesh::face;
 use crate::mesh::laplacian::Laplacian;
 use crate::mesh::pieces::pieces;
 use crate::mesh::weld::{compact, weld};
@@ -57,9 +58,8 @@ impl WeldedSequence {
         let poses: Vec<Vec<DVec3>> = sequence.poses().iter().map(|pose| scaled(&pose.positions)).collect();
         let all: Vec<&[DVec3]> = std::iter::once(&reference).chain(&poses).map(Vec::as_slice).collect();
         let (origin, number) = compact(&weld(&all, WELD));
-        let welded: Vec<[u32; 3]> = (faces.iter().map(|face| face.map(|v| number[v as usize])))
-            .filter(|&[a, b, c]| a != b && b != c && c != a)
-            .collect();
+        let welded: Vec<[u32; 3]> =
+            (faces.iter().map(|face| face.map(|v| number[v as usize]))).filter(face::is_whole).collect();
         let mut seen = vec![false; number.len()];
         faces.iter().flatten().for_each(|&v| seen[v as usize] = true);
         let mut counts = vec![0.0; origin.len()];
@@ -99,9 +99,8 @@ fn by_area(faces: &[[u32; 3]], points: &[DVec3]) -> Vec<Vec<u32>> {
     let found = pieces(faces, points.len());
     let mut list = vec![(0.0, Vec::new()); found.count];
     for (face, &piece) in faces.iter().zip(&found.face) {
-        let [a, b, c] = face.map(|v| points[v as usize]);
         let entry = &mut list[piece as usize];
-        entry.0 += (b - a).cross(c - a).length();
+        entry.0 += face::double_area_normal(face::corners(points, *face)).length();
         entry.1.extend(*face);
     }
     for (_, vertices) in &mut list {

@@ -7,6 +7,11 @@ pub fn corners(positions: &[DVec3], face: [u32; 3]) -> [DVec3; 3] {
     face.map(|v| positions[v as usize])
 }
 
+/// Whether a face names three different vertices.
+pub fn is_whole(&[a, b, c]: &[u32; 3]) -> bool {
+    a != b && b != c && c != a
+}
+
 /// Normal whose length is twice the area, counter-clockwise side.
 pub fn double_area_normal([a, b, c]: [DVec3; 3]) -> DVec3 {
     (b - a).cross(c - a)
@@ -25,6 +30,16 @@ pub fn centroid([a, b, c]: [DVec3; 3]) -> DVec3 {
 /// #F areas.
 pub fn areas(faces: &[[u32; 3]], positions: &[DVec3]) -> Vec<f64> {
     faces.iter().map(|&f| area(corners(positions, f))).collect()
+}
+
+/// #V unit normals, means over the faces around by their areas; zero where there is none.
+pub fn vertex_normals(faces: &[[u32; 3]], positions: &[DVec3]) -> Vec<DVec3> {
+    let mut normals = vec![DVec3::ZERO; positions.len()];
+    for &face in faces {
+        let normal = double_area_normal(corners(positions, face));
+        face.iter().for_each(|&v| normals[v as usize] += normal);
+    }
+    normals.into_iter().map(DVec3::normalize_or_zero).collect()
 }
 
 /// #F centroids.

@@ -9,6 +9,7 @@
 //! Forum 39(5), 2020, §4.5 lengthens all edges of the mesh alike; here it is each bad triangle's own, so that the others
 //! keep their cotangents to the bit. Every triangle still adds a positive semidefinite share.
 
+use super::face;
 use glam::DVec3;
 
 /// By how much of the mean edge length two sides of a triangle together must exceed the third; and of the third, so that
@@ -33,7 +34,7 @@ impl Laplacian {
     /// Builds both matrices. `faces` is #F triples of vertex numbers below #V; a face that names a vertex twice is left
     /// out. `positions` is #V finite points whose differences have squares in the range of numbers.
     pub fn new(faces: &[[u32; 3]], positions: &[DVec3]) -> Self {
-        let whole: Vec<[u32; 3]> = faces.iter().copied().filter(|&[a, b, c]| a != b && b != c && c != a).collect();
+        let whole: Vec<[u32; 3]> = faces.iter().copied().filter(face::is_whole).collect();
         let lengths: Vec<[f64; 3]> = whole.iter().map(|face| lengths(face.map(|v| positions[v as usize]))).collect();
         let mean = lengths.iter().flatten().sum::<f64>() / (3 * lengths.len()).max(1) as f64;
         let mut result = Self { mass: vec![0.0; positions.len()], ..Self::default() };

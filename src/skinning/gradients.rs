@@ -3,6 +3,7 @@
 use crate::linalg::outer::outer;
 use crate::linalg::polar;
 use crate::linalg::rigid_fit::Moments;
+use crate::mesh::face::vertex_normals;
 use glam::{DMat3, DQuat, DVec3};
 
 /// Numbers a vertex has per pose: the logarithm of its rotation and the six entries of its symmetric stretch.
@@ -34,7 +35,7 @@ pub fn features(ring: &Ring, poses: &[&[DVec3]], gamma_rotation: f64, gamma_shea
     let share = (poses.len().max(1) as f64).sqrt();
     let (turn, shear) = (gamma_rotation / share, gamma_shear / share);
     let mut features = vec![0.0; width * ring.reference.len()];
-    let normals = normals(ring.faces, ring.reference);
+    let normals = vertex_normals(ring.faces, ring.reference);
     for (t, pose) in poses.iter().enumerate() {
         let pose = without_rigid_motion(ring, pose);
         for (v, d) in gradients(ring, &normals, &pose).into_iter().enumerate() {
@@ -71,7 +72,7 @@ fn gradients(ring: &Ring, normals: &[DVec3], pose: &[DVec3]) -> Vec<DMat3> {
             }
         }
     }
-    let posed = self::normals(ring.faces, pose);
+    let posed = vertex_normals(ring.faces, pose);
     let gradient = |v: usize| {
         let size = 0.5 * (from[v].x_axis.x + from[v].y_axis.y + from[v].z_axis.z);
         let ridge = DMat3::from_diagonal(DVec3::splat(RIDGE * size));
@@ -93,15 +94,4 @@ fn without_rigid_motion(ring: &Ring, pose: &[DVec3]) -> Vec<DVec3> {
     let motion = moments.motion();
     let back = motion.rotation.transpose();
     pose.iter().map(|&q| back * (q - motion.translation)).collect()
-}
-
-/// #V unit normals, zero where there is none.
-fn normals(faces: &[[u32; 3]], positions: &[DVec3]) -> Vec<DVec3> {
-    let mut normals = vec![DVec3::ZERO; positions.len()];
-    for face in faces {
-        let [a, b, c] = face.map(|v| positions[v as usize]);
-        let normal = (b - a).cross(c - a);
-        face.iter().for_each(|&v| normals[v as usize] += normal);
-    }
-    normals.into_iter().map(|n| n.normalize_or_zero()).collect()
 }

@@ -76,7 +76,7 @@ impl WeldedSurface {
         let faces: Vec<[u32; 3]> = doctor::outward(sequence.faces(), sequence.reference())
             .iter()
             .map(|face| face.map(|v| place[v as usize]))
-            .filter(|&[a, b, c]| a != b && b != c && c != a)
+            .filter(face::is_whole)
             .collect();
         let mut surface = Self {
             place,
@@ -145,12 +145,7 @@ impl WeldedSurface {
 
     /// #N unit normals of the places at other positions.
     pub fn normals_of(&self, positions: &[DVec3]) -> Vec<DVec3> {
-        let mut normals = vec![DVec3::ZERO; self.len()];
-        for &f in &self.faces {
-            let normal = face::double_area_normal(face::corners(positions, f));
-            f.iter().for_each(|&v| normals[v as usize] += normal);
-        }
-        normals.into_iter().map(DVec3::normalize_or_zero).collect()
+        face::vertex_normals(&self.faces, positions)
     }
 
     /// The same surface, its pieces tied where they touch: places at both ends of a tie are neighbours.
@@ -184,15 +179,15 @@ impl WeldedSurface {
         &self.around[self.start[place] as usize..self.start[place + 1] as usize]
     }
 
+    /// The places that share an edge or a tie with a place.
+    pub fn neighbours(&self, place: usize) -> &[u32] {
+        &self.beside[self.neighbour_start[place] as usize..self.neighbour_start[place + 1] as usize]
+    }
+
     /// The pairs of places that share an edge or a tie, the lower number first.
     pub fn links(&self) -> impl Iterator<Item = (usize, usize)> + '_ {
         let upward = |v: usize| self.neighbours(v).iter().map(move |&u| (v, u as usize)).filter(|(v, u)| v < u);
         (0..self.len()).flat_map(upward)
-    }
-
-    /// The places that share an edge or a tie with a place.
-    pub fn neighbours(&self, place: usize) -> &[u32] {
-        &self.beside[self.neighbour_start[place] as usize..self.neighbour_start[place + 1] as usize]
     }
 
     /// The places of each connected piece, in ascending order.

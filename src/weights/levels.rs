@@ -8,6 +8,7 @@
 use super::box_problem::{self, Column, State};
 use super::quadratic::Quadratic;
 use super::surface::Surface;
+use crate::mesh::face;
 use crate::mesh::laplacian::Laplacian;
 
 /// Meshes with fewer vertices are not made coarser.
@@ -108,7 +109,7 @@ fn coarser(fine: &Surface) -> Option<Surface> {
         return None;
     }
     let mut faces: Vec<[u32; 3]> = fine.faces.iter().map(|face| face.map(|v| cell[v as usize])).collect();
-    faces.retain(|&[a, b, c]| a != b && b != c && c != a);
+    faces.retain(face::is_whole);
     faces.iter_mut().for_each(|face| face.sort_unstable());
     faces.sort_unstable();
     faces.dedup();

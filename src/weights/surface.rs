@@ -3,7 +3,7 @@
 use super::rings::Rings;
 use super::{WeightsError, dissection};
 use crate::mesh::ball::unit_ball;
-use crate::mesh::weld;
+use crate::mesh::{face, weld};
 use glam::DVec3;
 
 /// How far apart, in radii of the mesh, vertices along a seam may lie.
@@ -49,7 +49,7 @@ impl Surface {
         let (kept, welded) = weld::compact(&stands);
         let positions: Vec<DVec3> = kept.iter().map(|&v| scaled[v as usize]).collect();
         let renumbered = faces.iter().map(|face| face.map(|v| welded[v as usize]));
-        let faces: Vec<[u32; 3]> = renumbered.filter(|&[a, b, c]| a != b && b != c && c != a).collect();
+        let faces: Vec<[u32; 3]> = renumbered.filter(face::is_whole).collect();
         Ok(Self::dissected(welded, positions, faces, radius / scale))
     }
 }

@@ -9,6 +9,7 @@ use super::draco::{self, Unpacked};
 use crate::import::limits::Budget;
 use crate::import::{ImportError, counted};
 use crate::look::Layer;
+use crate::mesh::face::is_whole;
 use crate::warning::Warning;
 use glam::{DVec3, Vec3};
 use gltf::json::accessor::Type;
@@ -301,7 +302,7 @@ fn triangles(mode: Mode, corners: &[u32]) -> Vec<[u32; 3]> {
             .windows(3)
             .enumerate()
             .map(|(k, w)| if k % 2 == 0 { [w[0], w[1], w[2]] } else { [w[1], w[0], w[2]] })
-            .filter(|[a, b, c]| a != b && b != c && c != a)
+            .filter(is_whole)
             .collect(),
         Mode::TriangleFan => {
             corners.first().map(|&hub| corners[1..].windows(2).map(|w| [hub, w[0], w[1]]).collect()).unwrap_or_default()

@@ -2,6 +2,7 @@
 
 use super::Mesh;
 use super::orientation::Orientation;
+use crate::mesh::face::is_whole;
 use crate::mesh::{face, weld};
 use glam::DVec3;
 
@@ -105,7 +106,7 @@ impl<'a> Chart<'a> {
 
     /// Whether a face names three different points.
     pub fn is_whole(&self, f: usize) -> bool {
-        is_whole(self.faces[f])
+        is_whole(&self.faces[f])
     }
 
     /// The square of a face's longest side, at unit diagonal.
@@ -113,10 +114,6 @@ impl<'a> Chart<'a> {
         let [a, b, c] = face::corners(self.reference, self.given[f]).map(|p| p * self.scale);
         a.distance_squared(b).max(b.distance_squared(c)).max(c.distance_squared(a))
     }
-}
-
-fn is_whole([a, b, c]: [u32; 3]) -> bool {
-    a != b && b != c && c != a
 }
 
 /// 1 over the diagonal of the box around the vertices that faces use.
@@ -141,7 +138,7 @@ fn firsts(faces: &[[u32; 3]], points: usize) -> Vec<u32> {
         (points, f as u32)
     };
     let mut order: Vec<([u32; 3], u32)> =
-        faces.iter().enumerate().filter(|(_, face)| is_whole(**face)).map(sorted).collect();
+        faces.iter().enumerate().filter(|(_, face)| is_whole(face)).map(sorted).collect();
     sort_by_point(&mut order, points, |entry| entry.0[0]);
     let mut first: Vec<u32> = (0..faces.len() as u32).collect();
     for same in order.chunk_by(|a, b| a.0 == b.0) {
@@ -152,7 +149,7 @@ fn firsts(faces: &[[u32; 3]], points: usize) -> Vec<u32> {
 
 fn sides(faces: &[[u32; 3]], first: &[u32], points: usize) -> Vec<Side> {
     let mut sides = Vec::with_capacity(3 * faces.len());
-    for (f, &[a, b, c]) in faces.iter().enumerate().filter(|&(f, face)| is_whole(*face) && first[f] as usize == f) {
+    for (f, &[a, b, c]) in faces.iter().enumerate().filter(|&(f, face)| is_whole(face) && first[f] as usize == f) {
         for (v, w) in [(a, b), (b, c), (c, a)] {
             let edge = u64::from(v.min(w)) << 32 | u64::from(v.max(w));
             sides.push(Side { edge, tag: (f as u32) << 1 | u32::from(v < w) });

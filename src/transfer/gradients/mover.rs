@@ -4,6 +4,7 @@ use super::carry::{Scene, carry};
 use super::operator::gradients;
 use crate::linalg::cholesky::NotPositiveDefinite;
 use crate::mesh::bvh::Bvh;
+use crate::mesh::face::is_whole;
 use crate::observer::Observer;
 use crate::segmentation;
 use crate::sequence::Sequence;
@@ -276,9 +277,6 @@ fn parts_of(
         Err(segmentation::SegmentationError::Cancelled) => return Err(TransferError::Cancelled),
         Err(_) => return Err(TransferError::Degenerate { side: "source" }),
     };
-    let kept = |face: &[u32; 3]| {
-        let [a, b, c] = face.map(|v| surface.place[v as usize]);
-        a != b && b != c && c != a
-    };
+    let kept = |face: &[u32; 3]| is_whole(&face.map(|v| surface.place[v as usize]));
     Ok(source.faces().iter().zip(labels).filter(|(face, _)| kept(face)).map(|(_, label)| label).collect())
 }

@@ -1,5 +1,6 @@
 //! A surface's samples as a coarse mesh, and the graph along which distances between them run.
 
+use crate::mesh::face::is_whole;
 use crate::mesh::paths::Graph;
 use glam::DVec3;
 
@@ -46,7 +47,7 @@ pub fn graph(coarse: &[[u32; 3]], places: &[DVec3]) -> Graph {
 fn across(coarse: &[[u32; 3]], places: &[DVec3]) -> Vec<(u32, u32, f64)> {
     let mut sides: Vec<(u32, u32, u32)> = coarse
         .iter()
-        .filter(|[a, b, c]| a != b && b != c && c != a)
+        .filter(|face| is_whole(face))
         .flat_map(|&[a, b, c]| [(a.min(b), a.max(b), c), (b.min(c), b.max(c), a), (c.min(a), c.max(a), b)])
         .collect();
     sides.sort_unstable();

@@ -6,6 +6,7 @@
 
 use super::consensus::Consensus;
 use super::sampled::SampledSurface;
+use crate::mesh::face::vertex_normals;
 use crate::mesh::kd_tree::KdTree;
 use crate::sequence::Sequence;
 use crate::transfer::registration::{ClosestPoints, Effort, Known, Pin, Registration, shape_to_keep};
@@ -77,13 +78,7 @@ pub struct BentTarget<'a> {
 impl<'a> BentTarget<'a> {
     /// `bent` are the places of the target's samples on the source.
     pub fn new(target: &'a SampledSurface, bent: Vec<DVec3>) -> Self {
-        let mut normals = vec![DVec3::ZERO; bent.len()];
-        for face in &target.coarse {
-            let [a, b, c] = face.map(|s| bent[s as usize]);
-            let normal = (b - a).cross(c - a);
-            face.iter().for_each(|&s| normals[s as usize] += normal);
-        }
-        normals.iter_mut().for_each(|n| *n = n.normalize_or_zero());
+        let normals = vertex_normals(&target.coarse, &bent);
         let points: Vec<[f64; 6]> = bent.iter().zip(&normals).map(|(&p, &n)| key(p, n)).collect();
         Self { target, bent, normals, tree: KdTree::new(&points) }
     }

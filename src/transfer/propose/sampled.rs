@@ -8,7 +8,7 @@
 use super::coarse;
 use super::distances::Distances;
 use crate::mesh::doctor::outward;
-use crate::mesh::face::{self, nearest_in_triangle};
+use crate::mesh::face::{self, is_whole, nearest_in_triangle};
 use crate::mesh::kd_tree::KdTree;
 use crate::mesh::paths::{Graph, Paths};
 use crate::mesh::pieces::pieces;
@@ -80,8 +80,7 @@ impl SampledSurface {
         let distances = Distances::new(coarse::graph(&coarse, &places));
         let (vertex_normals, normals) = normals(&welded, &points, &stands, &cell, samples.len());
         let readings = readings(&points, &cell, &coarse, &places);
-        let proper = |[a, b, c]: &[u32; 3]| a != b && b != c && c != a;
-        let coarse = coarse.into_iter().filter(proper).collect();
+        let coarse = coarse.into_iter().filter(is_whole).collect();
         let mut members = vec![Vec::new(); samples.len()];
         for &v in &used {
             members[cell[v as usize] as usize].push(v);
@@ -187,7 +186,7 @@ fn normalised(faces: &[[u32; 3]], positions: &[DVec3]) -> Option<(Vec<DVec3>, DV
 fn sound(faces: &[[u32; 3]], stands: &[u32]) -> Vec<[u32; 3]> {
     let inside = |f: &&[u32; 3]| f.iter().all(|&v| (v as usize) < stands.len());
     let welded = faces.iter().filter(inside).map(|f| f.map(|v| stands[v as usize]));
-    welded.filter(|[a, b, c]| a != b && b != c && c != a).collect()
+    welded.filter(is_whole).collect()
 }
 
 /// Vertices of faces; of a mesh without any, all that stand for themselves.
@@ -284,8 +283,7 @@ fn normals(
     let mut of_vertex = vec![DVec3::ZERO; points.len()];
     let mut of_cell = vec![DVec3::ZERO; cells];
     for face in faces {
-        let [a, b, c] = face.map(|v| points[v as usize]);
-        let normal = (b - a).cross(c - a);
+        let normal = face::double_area_normal(face::corners(points, *face));
         for &v in face {
             of_vertex[v as usize] += normal;
             of_cell[cell[v as usize] as usize] += normal;
