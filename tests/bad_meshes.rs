@@ -6,8 +6,8 @@ mod odd_meshes;
 
 use glam::DVec3;
 use odd_meshes::{all, healthy};
-use sinew::export::animation::{Influences, SkinPose, exact, light};
-use sinew::export::{glb, skin};
+use sinew::export::animation::{exact, light_transfer};
+use sinew::export::glb;
 use sinew::import::{File, Options, open};
 use sinew::keypoints;
 use sinew::mesh::doctor::{Code, Diagnosis};
@@ -249,22 +249,9 @@ fn carried(source: &Sequence, target: &Sequence, moved: &transfer::Transfer) -> 
         finite("pose", pose.iter().flat_map(|p| p.to_array()))?;
     }
     finite("error", [moved.source_error])?;
-    let named = source.poses().iter().zip(poses).map(|(pose, positions)| Pose { positions, ..pose.clone() }).collect();
-    let moving = Sequence::new("moved", target.faces().to_vec(), target.reference().to_vec(), named);
-    read_back(target, exact(&moving.map_err(|why| why.to_string())?, None))?;
-    let named = source.poses().iter().zip(&moved.skin.maps);
-    let maps: Vec<SkinPose> = named.map(|(pose, maps)| SkinPose { name: &pose.name, time: pose.time, maps }).collect();
-    let dense = moved.skin.dense();
-    let skinned = skin::Skin {
-        name: "moved",
-        faces: target.faces(),
-        reference: target.reference(),
-        weights: &dense,
-        handles: moved.skin.handles.len(),
-        poses: &maps,
-        look: None,
-    };
-    if let Some(file) = sentence(light(&skinned, Influences::Four), true)? {
+    let moving = target.moving_like(source, poses).map_err(|why| why.to_string())?;
+    read_back(target, exact(&moving, None))?;
+    if let Some(file) = sentence(light_transfer(source, target, &moved.skin, None), true)? {
         finite("light form", [file.largest, file.rms])?;
         read_back(target, file.bytes)?;
     }

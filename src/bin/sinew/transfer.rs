@@ -11,7 +11,7 @@ use clap::{Args, ValueEnum};
 use glam::DVec3;
 use serde_json::{Value, json};
 use sinew::clock;
-use sinew::export::animation::{Influences, Skin, SkinPose, exact, light};
+use sinew::export::animation::{exact, light_transfer};
 use sinew::import::{File, Imported, Up, may_be_needed, natural_order};
 use sinew::mesh::ball::unit_ball;
 use sinew::observer::Silent;
@@ -248,19 +248,7 @@ fn distances(found: &[DVec3], truth: &[DVec3], radius: f64) -> Vec<f64> {
 /// The moving target as a skin over its handles; the root mean square and the largest error that this form adds, over the
 /// diagonal.
 fn write_light(path: &Path, source: &Sequence, target: &Imported, result: &Transferred) -> Result<[f64; 2], Refusal> {
-    let Imported { sequence: target, look, .. } = target;
-    let poses = source.poses().iter().zip(&result.skin.maps);
-    let poses: Vec<SkinPose> = poses.map(|(pose, maps)| SkinPose { name: &pose.name, time: pose.time, maps }).collect();
-    let skin = Skin {
-        name: target.name(),
-        faces: target.faces(),
-        reference: target.reference(),
-        weights: &result.skin.dense(),
-        handles: result.skin.handles.len(),
-        poses: &poses,
-        look: look.as_ref(),
-    };
-    let light = light(&skin, Influences::Four)?;
+    let light = light_transfer(source, &target.sequence, &result.skin, target.look.as_ref())?;
     output::write(path, &light.bytes)?;
     Ok([light.rms, light.largest])
 }

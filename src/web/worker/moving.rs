@@ -5,7 +5,6 @@ use super::sequences::{look, written};
 use super::values::{Reply, parsed, plain, put, read_pairs, sentence};
 use super::watcher;
 use crate::export::animation;
-use crate::export::skin::{self, Influences, SkinPose};
 use crate::memory::Step;
 use crate::transfer::{Parameters, Prepared};
 use js_sys::{Array, Float32Array, Function, Object, Uint16Array};
@@ -79,20 +78,7 @@ impl Engine {
                 written(&animation::exact(&moving, look), [0.0; 2], look)
             }
             "light" => {
-                let poses = source.poses().iter().zip(&moved.skin.maps);
-                let poses: Vec<SkinPose> =
-                    poses.map(|(pose, maps)| SkinPose { name: &pose.name, time: pose.time, maps }).collect();
-                let weights = moved.skin.dense();
-                let skin = skin::Skin {
-                    name: target.name(),
-                    faces: target.faces(),
-                    reference: target.reference(),
-                    weights: &weights,
-                    handles: moved.skin.handles.len(),
-                    poses: &poses,
-                    look,
-                };
-                let light = skin::light(&skin, Influences::Four).map_err(sentence)?;
+                let light = animation::light_transfer(source, target, &moved.skin, look).map_err(sentence)?;
                 written(&light.bytes, [light.largest, light.rms], look)
             }
             _ => Err(sentence("The form must be exact or light.")),
