@@ -1,10 +1,10 @@
 //! Where the key points of one mesh lie on another, without being told, or told of some of them.
 //!
 //! Both surfaces are thinned out to samples with all distances between them (`sampled`). A spread of the source's
-//! samples and the points asked for (`point_set`) look for their places together (`consensus`), from several starts (`starts`):
-//! the figures laid over each other as they stand, turned (`orientations`), or pulled to given pairs and tips, and from the other
-//! side; the outcome in which points agree best with each other counts (`placements`). Given pairs stay as they are and are
-//! listened to more.
+//! samples and the points asked for (`point_set`) look for their places together (`consensus`), from several starts
+//! (`starts`): the figures laid over each other as they stand, turned (`orientations`), or pulled to given pairs and tips,
+//! and from the other side; the outcome in which points agree best with each other counts (`placements`). Given pairs stay
+//! as they are and are listened to more.
 //! Where tips of both figures (`tips`) have come to lie next to each other, they are laid on each other, and the points
 //! agree once more: limbs of other lengths are then followed to their ends. The rest is for the surfaces (`refine`).
 //!

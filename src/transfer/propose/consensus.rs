@@ -11,7 +11,7 @@ use super::sampled::SampledSurface;
 use super::similarity::Similarity;
 use glam::DVec3;
 
-/// Points that each point listens to.
+/// Points that each point listens to, at most.
 const VOTERS: usize = 48;
 
 /// How far the scale around a point may differ from the scale of all.

@@ -30,7 +30,7 @@ pub struct Placement {
     outcome: Outcome,
 }
 
-/// Where a set ends.
+/// Where a set of points ends.
 #[derive(Clone, Debug)]
 struct Outcome {
     at: Places,
@@ -57,7 +57,7 @@ pub fn placements(figures: Figures) -> Vec<Placement> {
     placements
 }
 
-/// Where a set comes to lie on the target.
+/// Where a set of points comes to lie on the target.
 pub fn best(figures: Figures, placements: &[Placement], set: &PointSet) -> Places {
     let given: Vec<WeightedPair> =
         set.points.iter().filter_map(|p| Some((1.0, p.place, p.given.as_ref()?.place))).collect();
