@@ -378,3 +378,48 @@ fn what_a_command_reports_the_next_one_reads() {
     assert_eq!(output.status.code(), Some(2));
     assert!(String::from_utf8_lossy(&output.stderr).contains("points.json is no report with pairs"));
 }
+
+#[test]
+fn pairs_of_other_points_tell_where_those_asked_for_lie() {
+    let folder = folder("others");
+    let run = |line: &str| {
+        let output = sinew(&folder, &line.split(' ').collect::<Vec<_>>());
+        assert!(output.status.success(), "{line}: {}", String::from_utf8_lossy(&output.stderr));
+    };
+    run("zoo horse --faces 1000 --poses 1 --out horse.glb");
+    let file =
+        sinew::import::File { name: "horse.glb".into(), bytes: std::fs::read(folder.join("horse.glb")).unwrap() };
+    let horse = sinew::import::open(&[file], &sinew::import::Options::default()).unwrap().sequence;
+    let places = horse.reference();
+    let middle = places.iter().map(|p| p.y).sum::<f64>() / places.len() as f64;
+    // The horse looks along an axis, and is narrower across it.
+    let wide = |axis: usize| places.iter().map(|p| p[axis].abs()).fold(0.0, f64::max);
+    let across = if wide(0) < wide(2) { 0 } else { 2 };
+    let side = |v: u32| places[v as usize][across];
+    let mirrored = |v: u32| {
+        let mut place = places[v as usize];
+        place[across] = -place[across];
+        let far = |u: &u32| places[*u as usize].distance_squared(place);
+        (0..places.len() as u32).min_by(|a, b| far(a).total_cmp(&far(b))).unwrap()
+    };
+    let legs: Vec<u32> = (0..places.len() as u32)
+        .filter(|&v| places[v as usize].y < 0.5 * middle && side(v).abs() > 0.1 * wide(across))
+        .collect();
+    let (asked, told) = ([legs[0], legs[legs.len() / 2]], legs.iter().step_by(legs.len() / 8));
+    let told: Vec<Value> = told
+        .filter(|v| !asked.contains(v))
+        .map(|&v| serde_json::json!({ "source": v, "target": mirrored(v) }))
+        .collect();
+    std::fs::write(folder.join("points.json"), serde_json::to_vec(&asked).unwrap()).unwrap();
+    std::fs::write(folder.join("pairs.json"), serde_json::to_vec(&told).unwrap()).unwrap();
+    let proposed = |more: &str| -> Vec<u32> {
+        run(&format!("propose horse.glb --target horse.glb --points points.json --report out.json{more}"));
+        let report = json(&std::fs::read(folder.join("out.json")).unwrap());
+        report["pairs"].as_array().unwrap().iter().map(|pair| pair["target"].as_u64().unwrap() as u32).collect()
+    };
+    let (as_it_is, by_pairs) = (proposed(""), proposed(" --pairs pairs.json"));
+    assert_eq!([as_it_is.len(), by_pairs.len()], [2, 2]);
+    for (v, (same, other)) in asked.into_iter().zip(as_it_is.into_iter().zip(by_pairs)) {
+        assert!(side(v) * side(same) > 0.0 && side(v) * side(other) < 0.0, "{v}: {same}, {other}");
+    }
+}

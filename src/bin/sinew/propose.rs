@@ -21,7 +21,8 @@ pub struct Propose {
     /// Vertex numbers of the source, separated by white space or as a JSON list, or a report of key points
     #[arg(long, value_name = "FILE")]
     points: PathBuf,
-    /// The pairs that are known: [{"source": 12, "target": 34}, …], or lines of two numbers (.cons), or a report of proposals
+    /// Pairs that are known, of these or other points: [{"source": 12, "target": 34}, …], lines of two numbers (.cons), or a
+    /// report of proposals
     #[arg(long, value_name = "FILE")]
     pairs: Option<PathBuf>,
     /// Write the proposals as JSON
@@ -36,13 +37,16 @@ impl Propose {
         let target = self.input.open_target(&self.target)?;
         let points = lists::vertices(&self.points)?;
         let pairs = self.pairs.as_deref().map(lists::pairs).transpose()?.unwrap_or_default();
+        // What is known of other points tells where these lie as well: it comes last, and is not told again.
+        let others = pairs.iter().map(|pair| pair.source).filter(|source| !points.contains(source));
+        let all: Vec<u32> = points.iter().copied().chain(others).collect();
         let known: Vec<Option<u32>> =
-            points.iter().map(|&p| pairs.iter().find(|pair| pair.source == p).map(|pair| pair.target)).collect();
+            all.iter().map(|&p| pairs.iter().find(|pair| pair.source == p).map(|pair| pair.target)).collect();
         let (from, to) = (&source.sequence, &target.sequence);
         let start = clock::seconds();
         let proposer = Proposer::of(from, to)?;
         let prepared = clock::seconds();
-        let proposals = proposer.propose(&points, &known)?;
+        let proposals = proposer.propose(&all, &known)?;
         let done = clock::seconds();
         for (point, proposal) in points.iter().zip(&proposals.points) {
             say(format_args!("{point:>8} → {:<8} confidence {:.2}", proposal.target, proposal.confidence));
