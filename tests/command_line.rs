@@ -20,6 +20,12 @@ fn sinew(folder: &Path, arguments: &[&str]) -> Output {
     Command::new(env!("CARGO_BIN_EXE_sinew")).current_dir(folder).args(arguments).output().unwrap()
 }
 
+/// Runs a command that must succeed.
+fn done(folder: &Path, line: &str) {
+    let output = sinew(folder, &line.split(' ').collect::<Vec<_>>());
+    assert!(output.status.success(), "{line}: {}", String::from_utf8_lossy(&output.stderr));
+}
+
 fn json(bytes: &[u8]) -> Value {
     serde_json::from_slice(bytes).unwrap()
 }
@@ -359,10 +365,7 @@ fn a_target_keeps_the_materials_that_lie_beside_it() {
 #[test]
 fn what_a_command_reports_the_next_one_reads() {
     let folder = folder("chain");
-    let run = |line: &str| {
-        let output = sinew(&folder, &line.split(' ').collect::<Vec<_>>());
-        assert!(output.status.success(), "{line}: {}", String::from_utf8_lossy(&output.stderr));
-    };
+    let run = |line: &str| done(&folder, line);
     run("zoo horse --faces 1000 --poses 3 --out horse.glb");
     run("zoo camel --faces 1000 --poses 1 --out camel.glb");
     run("keypoints horse.glb --points 6 --report points.json");
@@ -382,10 +385,7 @@ fn what_a_command_reports_the_next_one_reads() {
 #[test]
 fn pairs_of_other_points_tell_where_those_asked_for_lie() {
     let folder = folder("others");
-    let run = |line: &str| {
-        let output = sinew(&folder, &line.split(' ').collect::<Vec<_>>());
-        assert!(output.status.success(), "{line}: {}", String::from_utf8_lossy(&output.stderr));
-    };
+    let run = |line: &str| done(&folder, line);
     run("zoo horse --faces 1000 --poses 1 --out horse.glb");
     let file =
         sinew::import::File { name: "horse.glb".into(), bytes: std::fs::read(folder.join("horse.glb")).unwrap() };

@@ -7,7 +7,7 @@ use crate::output::{self, say};
 use clap::Args;
 use serde_json::json;
 use sinew::clock;
-use sinew::transfer::propose::Proposer;
+use sinew::transfer::propose::{ENOUGH, Proposer};
 use sinew::warning::Warning;
 use std::path::PathBuf;
 
@@ -38,8 +38,9 @@ impl Propose {
         let points = lists::vertices(&self.points)?;
         let pairs = self.pairs.as_deref().map(lists::pairs).transpose()?.unwrap_or_default();
         // What is known of other points tells where these lie as well: it comes last, and is not told again.
-        let others = pairs.iter().map(|pair| pair.source).filter(|source| !points.contains(source));
-        let all: Vec<u32> = points.iter().copied().chain(others).collect();
+        let others: Vec<u32> = pairs.iter().map(|pair| pair.source).filter(|source| !points.contains(source)).collect();
+        let others = others.iter().step_by(others.len().div_ceil(ENOUGH).max(1));
+        let all: Vec<u32> = points.iter().chain(others).copied().collect();
         let known: Vec<Option<u32>> =
             all.iter().map(|&p| pairs.iter().find(|pair| pair.source == p).map(|pair| pair.target)).collect();
         let (from, to) = (&source.sequence, &target.sequence);
